@@ -15,12 +15,12 @@ set -eu
 cd "$(dirname "$0")"
 PATH=/usr/bin:$PATH # the Python whose packages are installed below
 
-demo_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev python3 python3-numpy python3-matplotlib'
-build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev libusb-1.0-0-dev libhidapi-dev libboost-dev"
+demo_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev liblz4-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev python3 python3-numpy python3-matplotlib'
+build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev libspectra-dev libusb-1.0-0-dev libhidapi-dev libboost-dev"
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
 view_packages='nodejs clang-16 lld-16 binaryen wasi-libc libc++-16-dev-wasm32 libc++abi-16-dev-wasm32 libclang-rt-16-dev-wasm32 python3'
 site_packages='python3 doxygen cmark-gfm'
-test_packages='libgtest-dev python3-pytest tetgen zstd'
+test_packages='libgtest-dev python3-pytest tetgen zstd lz4'
 all_packages='ccache git clang libclang-rt-dev clang-tidy clang-format chromium'
 nightly_packages="$bench_packages $site_packages munge parallel slurm-wlm tshark umockdev libumockdev-dev valgrind firefox-esr xvfb abigail-tools python3-venv
   mandoc groff-base bsdextrautils zsh fish lintian dpkg-dev make openssl qemu-system-x86 linux-image-amd64 busybox-static cpio kmod"

@@ -102,7 +102,7 @@ Failure Command::lack() const {
 void Command::heading(const std::string& heading) { app_->group(heading); }
 
 Option* Command::keep(CLI::Option* option) {
-  option->group(app_->get_parent() != nullptr ? heading_of(option->get_name()) : "Options");
+  option->group(app_->get_parent() != nullptr ? heading_of(option->get_name(), app_->get_parent()->get_name()) : "Options");
   return &options_.emplace_back(*option);
 }
 

@@ -26,8 +26,6 @@ std::vector<std::string> words_of(const char* text) {
 
 }  // namespace
 
-std::string version_and_commit() { return *TACTUS_COMMIT ? TACTUS_VERSION ", commit " TACTUS_COMMIT : TACTUS_VERSION; }
-
 void print_version(bool as_json) {
   Json out{{"schema", "tactus.version/1"}, {"version", TACTUS_VERSION}};
   if (*TACTUS_COMMIT) out["commit"] = TACTUS_COMMIT;

@@ -4,6 +4,7 @@
 # package          Debian package          target that proves it was found
 set(TACTUS_PACKAGES
   "zstd            libzstd-dev             zstd::libzstd_shared"
+  "LZ4             liblz4-dev              LZ4::lz4"
   "ode             libode-dev,pkgconf      PkgConfig::ode"
   "GnuTLS          libgnutls28-dev         GnuTLS::GnuTLS"
   "tomlplusplus    libtomlplusplus-dev     tomlplusplus::tomlplusplus"
@@ -13,7 +14,6 @@ set(TACTUS_PACKAGES
   "LDL             libsuitesparse-dev      SuiteSparse::LDL"
   "CHOLMOD         libsuitesparse-dev      SuiteSparse::CHOLMOD"
   "Spectra         libspectra-dev          Spectra::Spectra"
-  "OpenMesh        libopenmesh-dev         OpenMeshCore"
   "libusb          libusb-1.0-0-dev,pkgconf PkgConfig::libusb"
   "hidapi          libhidapi-dev,pkgconf   PkgConfig::hidapi"
   "Boost           libboost-dev            Boost::headers"
@@ -25,7 +25,7 @@ set(TACTUS_PACKAGES
   "WasmClang clang-16,lld-16,binaryen,wasi-libc,libc++-16-dev-wasm32,libc++abi-16-dev-wasm32,libclang-rt-16-dev-wasm32 WasmClang::compiler"
   "Node            nodejs,npm              Node::node")
 
-# These come without a CMake file: FindLDL.cmake and FindCHOLMOD.cmake (installed beside ours), FindWasmClang.cmake, FindNode.cmake.
+# These come without a CMake file: FindLZ4.cmake, FindLDL.cmake and FindCHOLMOD.cmake (installed beside ours), FindWasmClang.cmake, FindNode.cmake.
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 
 # The packages whose ways differ from `find_package(NAME)`: ODE, libusb and hidapi come without a CMake file, Python needs its component named.

@@ -7,7 +7,7 @@
 
 # The packages whose headers and libraries our libraries need, and no other.
 set(dev_depends)
-set(dev_packages zstd ode GnuTLS tomlplusplus Eigen3 LDL Spectra OpenMesh)
+set(dev_packages zstd LZ4 ode GnuTLS tomlplusplus Eigen3 LDL Spectra)
 foreach(row IN LISTS TACTUS_PACKAGES)
   separate_arguments(words UNIX_COMMAND "${row}")
   list(GET words 0 package)

@@ -21,7 +21,7 @@ class Histogram {
     const auto bin = static_cast<std::size_t>(std::clamp<Time>(duration / kBin, 0, kBins));
     ++(bin < kBins ? bins_[bin] : longer_);
     ++count_;
-    longest_ = std::max(longest_, duration);
+    longest_ = (std::max)(longest_, duration);
   }
   std::uint64_t count() const noexcept { return count_; }
   std::uint64_t longer() const noexcept { return longer_; }  ///< than 10 ms
@@ -31,7 +31,7 @@ class Histogram {
     const auto wanted = static_cast<std::uint64_t>(share * static_cast<double>(count_));
     std::uint64_t seen = 0;
     for (std::size_t bin = 0; bin < kBins; ++bin)
-      if ((seen += bins_[bin]) > wanted) return std::min(longest_, kBin * static_cast<Time>(bin + 1));
+      if ((seen += bins_[bin]) > wanted) return (std::min)(longest_, kBin * static_cast<Time>(bin + 1));
     return longest_;
   }
 

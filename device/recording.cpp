@@ -42,8 +42,8 @@ tl::expected<std::vector<RecordedSample>, Diagnostic> read_samples(TraceReader& 
 
 tl::expected<Recording, Diagnostic> Recording::read(const std::string& path, const RecordingOptions& options) try {
   if (!(options.pace > 0 && options.pace <= 1000)) return refuse(path, fail(Errc::invalid_argument, "R-API-4").value(), "pace");
-  auto reader = TraceReader::open(path);
-  if (!reader) return refuse(path, reader.error());
+  auto reader = TraceReader::open(path, {});
+  if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& info = reader->info();
   const auto user = options.user.empty() ? info.users.begin() : std::ranges::find(info.users, options.user, &TraceUser::name);
   if (user == info.users.end())

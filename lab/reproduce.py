@@ -13,7 +13,7 @@ import sys
 import typing
 
 from common import arguments, figure, program, table
-from thesis import delay, limits, rates, signals, touch, ways
+from thesis import delay, limits, numbers, rates, signals, touch, ways
 
 
 class Figure(typing.NamedTuple):
@@ -173,17 +173,20 @@ def every(options):
     names = [name for name, one in FIGURES.items() if can_make(name, one)]
     report = os.path.join(options.output, "report.md")
     check_free(report, options)
+    check_free(os.path.join(options.output, "figures.csv"), options)
     prepare(names, options)
     bar = program.Progress("reproduce all", len(names), not options.quiet and not options.no_progress)
     inner = argparse.Namespace(**vars(options) | {"no_progress": True})
-    text = HEADING.format(typed("all", options))
+    text, rows = HEADING.format(typed("all", options)), []
     for name in names:
         made = FIGURES[name].make(inner)
+        rows += numbers.rows(name, made.report)
         write(name, made, options)
         text += section(name, made, options)
         bar.step()
     bar.clear()
     table.write_whole(report, text.encode(), options.force)
+    table.write_csv(os.path.join(options.output, "figures.csv"), numbers.HEAD, rows, options.force)
     if not options.quiet:
         print(f"{report}: {len(names)} figures")
 

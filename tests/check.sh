@@ -9,8 +9,8 @@
 #     consumer [DIR]  install a build, then build and run projects that use it (DIR: a finished build; else codec-only)
 #     conformance     build and run the conformance suite
 #     exact [all]     same hashes from g++ -O0 and clang -O3 with the machine's own instructions; all: and the other two of each
-#     tidy [FOLDER...]  clang-tidy, over everything but tests/ and examples/ if no folder is named
-#     tidy-changed    clang-tidy of the folders in which a file differs from the last landing
+#     tidy [FOLDER...]  clang-tidy, over everything but tests/ and examples/ if no folder is named; marks in tests/tidy-passed.txt what passed
+#     tidy-changed    clang-tidy of the folders in which a file differs from what passed
 #     format          clang-format
 #     fuzz SECONDS    every libFuzzer target for so long
 #     msan            MemorySanitizer: the codec over all its fuzz corpora, the vectors and the golden motions
@@ -60,8 +60,11 @@ check_headers() { # INCLUDE_DIR
     # shellcheck disable=SC2086 # a list of words
     echo "#include <tactus/$header>" | "${CXX:-c++}" -std=c++20 -fsyntax-only -I "$1/.." $eigen -x c++ - || die "$header does not stand alone"
   done
+  # With what Windows' headers define, unless NOMINMAX is: behind those of others, which undo it.
   # shellcheck disable=SC2086
-  (cd "$1" && find . -name '*.h' | LC_ALL=C sort | sed 's,^\./\(.*\)$,#include <tactus/\1>,') |
+  (cd "$1" && grep -rhoE '^#include <[A-Za-z_/.]+>' . | grep -v tactus/ | sort -u
+    printf '#define %s\n' 'min(a, b) ((a) < (b) ? (a) : (b))' 'max(a, b) ((a) > (b) ? (a) : (b))' near far 'small char' 'ERROR 0'
+    find . -name '*.h' | LC_ALL=C sort | sed 's,^\./\(.*\)$,#include <tactus/\1>,') |
     "${CXX:-c++}" -std=c++20 -fsyntax-only -I "$1/.." $eigen -x c++ - || die 'the headers do not agree with one another'
 }
 
@@ -131,26 +134,57 @@ exact() { # [all]
 
 # Without tests/: tests/bench alone takes two minutes of a core, and each `for (auto _ : state)` in it is a finding, as is a leak in the header
 # of Google Benchmark.
-tidy() { # [FOLDER...]
-  [ $# -gt 0 ] || set -- codec io metrics sim device cli bindings conformance
-  cmake --preset clang >/dev/null
-  run-clang-tidy -quiet -p build/clang -j "$jobs" "^$PWD/($(echo "$*" | tr ' ' '|'))/" >build/clang/tidy.txt 2>&1 ||
-    { grep -E '(warning|error):' build/clang/tidy.txt | sort -u; die "clang-tidy has findings; the whole text is in build/clang/tidy.txt"; }
+tidy_tops='codec io metrics sim device cli bindings conformance'
+
+tidy() { # [FOLDER...]: with what is below each
+  # shellcheck disable=SC2086 # a list of words
+  [ $# -gt 0 ] || set -- $tidy_tops
+  # shellcheck disable=SC2046
+  tidy_folders $(source_folders "$@")
 }
 
-# The last landing is where this branch left main, on main itself the commit before. Unknown: everything.
+# tests/tidy-passed.txt keeps what passed, a line `HASH FOLDER` each. What a header of another folder brings, only `tidy` of everything sees.
 tidy_changed() {
-  base=$(git merge-base HEAD origin/main 2>/dev/null || git merge-base HEAD main 2>/dev/null) || base=
-  [ "$base" != "$(git rev-parse HEAD 2>/dev/null)" ] || base=$(git rev-parse 'HEAD^1' 2>/dev/null) || base=
-  if [ -z "$base" ]; then
-    echo 'no history to compare with: all folders'
-    tidy
-    return
-  fi
-  # Files that are there still; their folders.
-  folders=$(git diff --name-only --diff-filter=d "$base" -- codec io metrics sim device cli bindings conformance | sed -n 's,/[^/]*[.]\(h\|cpp\)$,,p' | sort -u)
-  # shellcheck disable=SC2086 # a list of folders
-  if [ -n "$folders" ]; then echo "since $base:" $folders; tidy $folders; else echo "no source changed since $base"; fi
+  # shellcheck disable=SC2046,SC2086
+  set -- $(for folder in $(source_folders $tidy_tops); do
+    grep -qxF "$(tidy_hash "$folder") $folder" tests/tidy-passed.txt 2>/dev/null || echo "$folder"
+  done)
+  if [ $# -gt 0 ]; then tidy_folders "$@"; else echo 'no folder differs from what passed'; fi
+}
+
+source_folders() { find "$@" \( -name '*.h' -o -name '*.cpp' \) -print | sed 's,/[^/]*$,,' | LC_ALL=C sort -u; }
+
+# Of the rules and of the files right in the folder; needs no git.
+tidy_hash() { # FOLDER
+  (
+    LC_ALL=C
+    for file in .clang-tidy "$1"/*.h "$1"/*.cpp; do [ ! -f "$file" ] || sha256sum "$file"; done
+  ) | sha256sum | cut -c 1-16
+}
+
+# Folders of which this machine builds nothing are named and not marked.
+tidy_folders() { # FOLDER...
+  cmake --preset clang >/dev/null
+  for folder; do
+    shift
+    if grep -q "\"file\": \"$PWD/$folder/[^/]*\"" build/clang/compile_commands.json; then set -- "$@" "$folder"; else echo "not built here: $folder"; fi
+  done
+  [ $# -gt 0 ] || return 0
+  echo "clang-tidy: $*"
+  found=
+  run-clang-tidy -quiet -p build/clang -j "$jobs" "^$PWD/($(echo "$*" | tr ' ' '|'))/[^/]*\$" >build/clang/tidy.txt 2>&1 || found=yes
+  tidy_mark "$@"
+  [ -z "$found" ] || { grep -E '(warning|error):' build/clang/tidy.txt | sort -u; die "clang-tidy has findings; the whole text is in build/clang/tidy.txt"; }
+}
+
+# Folders that build/clang/tidy.txt finds nothing in.
+tidy_mark() { # FOLDER...
+  sed 's/\x1b\[[0-9;]*m//g' build/clang/tidy.txt | sed -n 's/^\(\/[^:]*\):[0-9]*:[0-9]*: \(warning\|error\):.*/\1/p' | sort -u | xargs -r realpath >build/clang/tidy-found.txt
+  for folder; do
+    if grep -q "^$PWD/$folder/[^/]*\$" build/clang/tidy-found.txt || grep -qv "^$PWD/" build/clang/tidy-found.txt; then continue; fi
+    { grep -v " $folder\$" tests/tidy-passed.txt || true; echo "$(tidy_hash "$folder") $folder"; } | LC_ALL=C sort -k 2 >build/clang/tidy-passed.txt
+    cp build/clang/tidy-passed.txt tests/tidy-passed.txt
+  done
 }
 
 # The program and the page of the preset test, with what else a browser needs.

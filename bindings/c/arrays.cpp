@@ -75,6 +75,20 @@ tactus_status tactus_arrays_user(tactus_arrays* arrays, const char* name, const 
   });
 }
 
+tactus_status tactus_arrays_contact(tactus_arrays* arrays, const char* user, const char* object, double stiffness, int32_t kind,
+                                    int32_t at_origin, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (arrays == nullptr || user == nullptr || object == nullptr) return refuse();
+    if (kind != TACTUS_CONTACT_SURFACE && kind != TACTUS_CONTACT_SPRING) return refuse();
+    arrays->arrays.contacts.push_back({.user = user,
+                                       .object = object,
+                                       .stiffness = stiffness,
+                                       .kind = kind == TACTUS_CONTACT_SURFACE ? ContactKind::surface : ContactKind::spring,
+                                       .at = at_origin != 0 ? ForcePoint::origin : ForcePoint::device});
+    return TACTUS_OK;
+  });
+}
+
 tactus_status tactus_arrays_write(tactus_arrays* arrays, const char* path, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     if (arrays == nullptr || path == nullptr) return refuse();

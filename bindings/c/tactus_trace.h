@@ -154,6 +154,11 @@ TACTUS_API tactus_status tactus_arrays_object(tactus_arrays* arrays, const char*
 /* Rows of a user, world frame.   in  device  3 per row [m];  force  3 per row [N] on the user; one of them may be NULL */
 TACTUS_API tactus_status tactus_arrays_user(tactus_arrays* arrays, const char* name, const double* device, const double* force,
                                             tactus_error* error);
+/* What a user touched, so that its forces have a bound: at each tick the force stretches a spring between the device and the object.
+   in   stiffness  N/m;  kind  TACTUS_CONTACT_SURFACE: what lies along the force counts; _SPRING: the whole vector, as of a grip;
+   at_origin  1: the force acts at the object's origin, of a user without a device   err  R-API-5, 4: when it is written */
+TACTUS_API tactus_status tactus_arrays_contact(tactus_arrays* arrays, const char* user, const char* object, double stiffness,
+                                               int32_t kind, int32_t at_origin, tactus_error* error);
 /* Write a trace.   err  R-CSV-4, 5, 7, 8; R-TRC-1, 11, 17; R-API-1, 2 */
 TACTUS_API tactus_status tactus_arrays_write(tactus_arrays* arrays, const char* path, tactus_error* error);
 /* What _write decided: lines "where: what (count; first place)"; after an error the last one says where. Lives until the next call. */

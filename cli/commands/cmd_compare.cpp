@@ -9,7 +9,7 @@
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
-#include "cli/figure/error_figure.h"
+#include "cli/figure/time_figure.h"
 #include "cli/options/contact_option.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
@@ -92,9 +92,8 @@ struct Side {
   std::uint64_t unmatched = 0;  // of them, whose tick the other trace lacks
 
   Outcome advance() {
-    const auto next = reader.next(frame);
-    if (!next) return refuse(path, next.error());
-    more = *next;
+    TACTUS_TRY(const bool next, next_frame(reader, frame, path));
+    more = next;
     frames += more ? 1 : 0;
     return more ? Outcome() : check_ending(path, reader, frames);
   }
@@ -141,8 +140,8 @@ void note_unmatched(const Side& truth, const Side& replica, Report& report) {
   report.warnings.push_back(text + ". They were left out" + (is_live ? "" : "; decode with --like " + truth.path));
 }
 
-tl::expected<Side, Failure> open(const std::string& path) {
-  auto reader = open_trace(path);
+tl::expected<Side, Failure> open(const std::string& path, const CompareOptions& options) {
+  auto reader = open_trace(path, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   return Side{path, std::move(*reader)};
 }
@@ -168,8 +167,8 @@ void set_bounds(const CompareOptions& options, const TraceInfo& info, const std:
 
 Outcome run(const CompareOptions& options) {
   TACTUS_CHECK(check_plot_option(options.plot, options.common, {options.truth, options.replica}));
-  TACTUS_TRY(auto truth, open(options.truth));
-  TACTUS_TRY(auto replica, open(options.replica));
+  TACTUS_TRY(auto truth, open(options.truth, options));
+  TACTUS_TRY(auto replica, open(options.replica, options));
   const TraceInfo& info = truth.reader.info();
   TACTUS_CHECK(check_same_scene(options, info, replica.reader.info()));
 
@@ -187,6 +186,7 @@ Outcome run(const CompareOptions& options) {
     return refuse(shown_path(options.replica) + ": shares no tick with " + shown_path(options.truth),
                   "Decode with --like " + shown_path(options.truth) + ".");
   note_unmatched(truth, replica, report);
+  for (const Side* side : {&truth, &replica}) report.add(side->reader.notes());
   if (figure)
     TACTUS_CHECK(draw(options.plot,
                       Figure{"Error of " + std::filesystem::path(options.replica).filename().string(), figure->panels(report)},

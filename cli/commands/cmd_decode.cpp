@@ -12,7 +12,7 @@
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
-#include "cli/figure/motion_figure.h"
+#include "cli/figure/time_figure.h"
 #include "cli/report/report.h"
 
 namespace tactus::cli {
@@ -32,16 +32,15 @@ class TickSource {
   static tl::expected<TickSource, Failure> create(const DecodeOptions& options) {
     TickSource source(options);
     if (options.like.empty()) return source;
-    auto like = open_trace(options.like);
+    auto like = open_trace(options.like, options.common.progress());
     if (!like) return tl::unexpected(like.error());
     source.like_.emplace(std::move(*like));
     return source;
   }
   tl::expected<std::optional<std::int64_t>, Failure> next(Player& player) {
     if (like_) {
-      const auto more = like_->next(frame_);
-      if (!more) return refuse(options_->like, more.error());
-      if (*more) return ++frames_, std::optional(frame_.tick);
+      TACTUS_TRY(const bool more, next_frame(*like_, frame_, options_->like));
+      if (more) return ++frames_, std::optional(frame_.tick);
       TACTUS_CHECK(check_ending(options_->like, *like_, frames_));
       return std::nullopt;
     }

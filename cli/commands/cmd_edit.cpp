@@ -12,6 +12,7 @@
 #include "cli/commands/commands.h"
 #include "cli/commands/input.h"
 #include "cli/options/units.h"
+#include "cli/report/notes.h"
 #include "cli/report/report.h"
 
 namespace tactus::cli {
@@ -46,12 +47,11 @@ Outcome copy(TraceReader& reader, TraceWriter& writer, const CutOptions& options
   TraceFrame frame;
   std::optional<std::int64_t> base;
   for (std::uint64_t read = 1;; ++read) {
-    const auto more = report.timings[0].times.measure([&] { return reader.next(frame); });
-    if (!more) return refuse(options.input, more.error());
-    if (!*more) return check_ending(options.input, reader, read - 1);
+    TACTUS_TRY(const bool more, report.timings[0].times.measure([&] { return next_frame(reader, frame, options.input); }));
+    if (!more) return check_ending(options.input, reader, read - 1);
     progress.update(read);
     if (frame.tick < from) continue;
-    if (frame.tick >= to) return {};
+    if (frame.tick >= to) return print_notes(reader.notes(), options.input), Outcome();
     if (!base) {
       base = options.rebase ? frame.tick : 0;
       begin_shapes(frame);
@@ -66,7 +66,7 @@ Outcome copy(TraceReader& reader, TraceWriter& writer, const CutOptions& options
 Outcome run(const CutOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   if (options.to <= options.from) return refuse_arguments("--to: nothing lies between it and --from", "Give a later --to.");
-  auto reader = open_trace(options.input);
+  auto reader = open_trace(options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& info = reader->info();
   if (options.rebase && info.shows_past)
@@ -83,6 +83,7 @@ Outcome run(const CutOptions& options) {
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   TACTUS_CHECK(output.keep());
   report.describe(info);
+  report.add(reader->notes());
   print(report, options.common, beside(options.output));
   return {};
 }
@@ -127,9 +128,8 @@ struct Part {
   bool more = false;
 
   Outcome advance() {
-    const auto next = reader.next(frame);
-    if (!next) return refuse(path, next.error());
-    more = *next;
+    TACTUS_TRY(const bool next, next_frame(reader, frame, path));
+    more = next;
     frames += more ? 1 : 0;
     is_new.resize(frame.meshes.size());
     for (std::size_t i = 0; i < is_new.size(); ++i) is_new[i] = is_new[i] || (more && frame.meshes[i].updated);
@@ -213,7 +213,7 @@ Outcome run(const MergeOptions& options) {
   TraceInfo all;
   Report report{.command = "merge", .files = {{"merged", options.output}}};
   for (const std::string& path : options.inputs) {
-    auto reader = open_trace(path);
+    auto reader = open_trace(path, options.common.progress());
     if (!reader) return tl::unexpected(reader.error());
     parts.push_back({path, std::move(*reader), static_cast<std::uint32_t>(all.objects.size()),
                      static_cast<std::uint32_t>(all.meshes.size())});
@@ -228,6 +228,7 @@ Outcome run(const MergeOptions& options) {
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   TACTUS_CHECK(output.keep());
   report.describe(all);
+  for (const Part& part : parts) report.add(part.reader.notes());
   for (const Part& part : parts)
     if (part.unmatched > 0)
       report.warnings.push_back(
@@ -277,9 +278,8 @@ Outcome resample(TraceReader& reader, Resampler& resampler, TraceWriter& writer,
   Progress progress("resample", reader.frame_count(), options.common.progress());
   TraceFrame in, out;
   for (std::uint64_t read = 0;; ++read) {
-    const auto more = reader.next(in);
-    if (!more) return refuse(options.input, more.error());
-    if (!*more) {
+    TACTUS_TRY(const bool more, next_frame(reader, in, options.input));
+    if (!more) {
       resampler.end();
       TACTUS_CHECK(write_due(resampler, out, writer, options, report));
       return check_ending(options.input, reader, read);
@@ -295,7 +295,7 @@ Outcome resample(TraceReader& reader, Resampler& resampler, TraceWriter& writer,
 
 Outcome run(const ResampleOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
-  auto reader = open_trace(options.input);
+  auto reader = open_trace(options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   if (reader->info().shows_past)
     return refuse(shown_path(options.input) + ": a client's trace, whose ticks are those of the server",
@@ -312,6 +312,7 @@ Outcome run(const ResampleOptions& options) {
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   TACTUS_CHECK(output.keep());
   report.describe(resampler.info());
+  report.add(reader->notes());
   print(report, options.common, beside(options.output));
   return {};
 }
@@ -336,95 +337,6 @@ void setup_resample(Command& app, Action& action) {
       "are those of the sample before. Nothing is filtered.\n"
       "Example:\n  tactus resample handwriting.mcap --rate 1000 -o at-1kHz.mcap");
   on_chosen<ResampleOptions>(command, action, options, run);
-}
-
-// ==== cmd recover ====
-
-namespace {
-
-struct RecoverOptions {
-  std::string input, output;
-  CommonOptions common;
-};
-
-/// What can be read, and why the rest cannot.
-struct Rescue {
-  std::optional<Error> damage{};
-  bool cut_short = false;
-};
-
-tl::expected<Rescue, Failure> copy(TraceReader& reader, TraceWriter& writer, const RecoverOptions& options, Report& report) {
-  Progress progress("recover", reader.frame_count(), options.common.progress());
-  TraceFrame frame;
-  for (;;) {
-    const auto more = report.timings[0].times.measure([&] { return reader.next(frame); });
-    if (!more) return Rescue{.damage = more.error()};
-    if (!*more) return Rescue{.cut_short = reader.cut_short()};
-    if (const auto written = writer.write(frame); !written)
-      return refuse(options.output, place_of_tick(frame.tick), written.error());
-    report.ticks.add(frame.tick);
-    progress.update(report.ticks.count());
-  }
-}
-
-/// What was written is what was read.
-Outcome read_back(const std::string& path, const RecoverOptions& options, const TickSpan& ticks) {
-  auto reader = TraceReader::open(path);
-  if (!reader) return refuse(options.output, reader.error());
-  TraceFrame frame;
-  TickSpan read;
-  for (;;) {
-    const auto more = reader->next(frame);
-    if (!more) return refuse(options.output, more.error());
-    if (!*more) break;
-    read.add(frame.tick);
-  }
-  if (read.count() == ticks.count() && read.length() == ticks.length() && !reader->cut_short()) return {};
-  return refuse(fmt::format("{}: {} of {} ticks can be read back", shown_path(options.output), read.count(), ticks.count()),
-                "Write it to another disk.");
-}
-
-Outcome run(const RecoverOptions& options) {
-  auto reader = TraceReader::open(options.input);
-  if (!reader) return refuse(options.input, reader.error());
-  TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
-  auto writer = TraceWriter::create(output.working_path(), reader->info());
-  if (!writer) return refuse(options.output, writer.error());
-  Report report{.command = "recover", .files = {{"trace", options.input}, {"recovered", options.output}}};
-  report.timings = {{"read"}};
-  TACTUS_TRY(const Rescue rescue, copy(*reader, *writer, options, report));
-  if (report.ticks.count() == 0 && rescue.damage) return refuse(options.input, *rescue.damage);
-  if (report.ticks.count() == 0)
-    return refuse(shown_path(options.input) + ": no whole tick is in it", "Nothing can be recovered.");
-  if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
-  if (output.is_temporary()) TACTUS_CHECK(read_back(output.working_path(), options, report.ticks));
-  TACTUS_CHECK(output.keep());
-  report.describe(reader->info());
-  if (rescue.damage)
-    report.warnings.push_back(
-        fmt::format("what comes after tick {} is damaged ({}) and lost", report.ticks.last(), rescue.damage->rule));
-  else if (rescue.cut_short)
-    report.warnings.push_back(
-        fmt::format("the trace ends inside a chunk; what came after tick {} is lost, at most a second or 1 MiB "
-                    "of messages if nothing else was cut off",
-                    report.ticks.last()));
-  else report.warnings.emplace_back("nothing is missing: the trace is whole");
-  print(report, options.common, beside(options.output));
-  return {};
-}
-
-}  // namespace
-
-void setup_recover(Command& app, Action& action) {
-  auto options = std::make_shared<RecoverOptions>();
-  Command& command = app.add_command("recover", "Save what can be read of a trace that was cut or damaged");
-  command.add_option("TRACE", options->input, "Trace that was not finished, or is damaged (MCAP)")->type_name("")->required();
-  command.add_option("-o,--output", options->output, "Trace to write (MCAP)")->required()->type_name("FILE");
-  add_output_options(command, options->common);
-  command.footer(
-      "Writes all ticks before the cut or the first damage, with an index, and reads them back.\n"
-      "Example:\n  tactus recover crashed.mcap -o rescued.mcap");
-  on_chosen<RecoverOptions>(command, action, options, run);
 }
 
 }  // namespace tactus::cli

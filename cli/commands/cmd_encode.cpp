@@ -13,7 +13,7 @@
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
-#include "cli/figure/error_figure.h"
+#include "cli/figure/time_figure.h"
 #include "cli/options/contact_option.h"
 #include "cli/options/option_needs.h"
 #include "cli/report/report.h"
@@ -48,7 +48,7 @@ using Clusters = std::map<std::string, ClusterBasis>;
 /// Those of all meshes, for which the trace is read once more.
 tl::expected<Clusters, Failure> clusters_of(const std::string& path, const EncodeOptions& options) {
   if (options.clusters == 0) return Clusters{};
-  auto reader = open_trace(path, options.input);
+  auto reader = open_trace(path, options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   auto found = find_clusters(*reader, options.clusters);
   if (!found) return refuse(options.input, found.error());
@@ -142,9 +142,8 @@ Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, con
       return refuse(to_blame(done.error(), options), place_of_tick(frame.tick), done.error());
     }
     progress.update(report.ticks.count());
-    const auto more = reader.next(frame);
-    if (!more) return refuse(options.input, more.error());
-    if (!*more) break;
+    TACTUS_TRY(const bool more, next_frame(reader, frame, options.input));
+    if (!more) break;
   }
   if (const auto done = session.writer.finish(); !done) return refuse(options.output, done.error());
   return {};
@@ -157,12 +156,11 @@ Outcome run(const EncodeOptions& options) {
     TACTUS_TRY(again, RereadableInput::open(options.input));
   }
   const std::string& path = again ? again->path() : options.input;
-  auto reader = open_trace(path, options.input);
+  auto reader = open_trace(path, options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   TraceFrame frame;
-  const auto any = reader->next(frame);
-  if (!any) return refuse(options.input, any.error());
-  if (!*any) {
+  TACTUS_TRY(const bool any, next_frame(*reader, frame, options.input));
+  if (!any) {
     TACTUS_CHECK(check_ending(options.input, *reader, 0));
     return refuse(shown_path(options.input) + ": the trace has no frames", "Record or simulate at least one tick.");
   }
@@ -187,6 +185,7 @@ Outcome run(const EncodeOptions& options) {
   for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.is_main();
   TACTUS_CHECK(encode_all(*reader, *session, frame, contacts, options, report));
   TACTUS_CHECK(check_ending(options.input, *reader, report.ticks.count()));
+  report.add(reader->notes());
   if (reader->cut_short())
     report.warnings.emplace_back("the trace ends without its index; everything before the cut was encoded");
   TACTUS_CHECK(output.keep());

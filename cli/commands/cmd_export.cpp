@@ -27,7 +27,7 @@ struct ExportOptions {
 };
 
 Outcome run(const ExportOptions& options) {
-  auto reader = open_trace(options.input);
+  auto reader = open_trace(options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
   TACTUS_TRY(const auto stream, output.open());
@@ -136,7 +136,7 @@ Outcome write_all(MotionSource& source, FoxgloveWriter& writer, const ExportFoxg
 
 Outcome run(const ExportFoxgloveOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
-  TACTUS_TRY(auto source, MotionSource::open(options.input));
+  TACTUS_TRY(auto source, MotionSource::open(options.input, options.common.progress()));
   TACTUS_TRY(auto shapes, shapes_of(options, source.info()));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input, options.layout}));
   if (!options.layout.empty())

@@ -4,7 +4,7 @@
 
 #include "cli/commands/commands.h"
 #include "cli/commands/input.h"
-#include "cli/figure/motion_figure.h"
+#include "cli/figure/time_figure.h"
 #include "cli/report/report.h"
 
 namespace tactus::cli {
@@ -32,7 +32,7 @@ tl::expected<MotionFigure, Failure> read_all(MotionSource& source, const ExportF
 }
 
 Outcome run(const ExportFigureOptions& options) {
-  TACTUS_TRY(auto source, MotionSource::open(options.input));
+  TACTUS_TRY(auto source, MotionSource::open(options.input, options.common.progress()));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
   TACTUS_TRY(const auto stream, output.open());
   Report report{.command = "export figure",

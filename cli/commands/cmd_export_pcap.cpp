@@ -83,9 +83,8 @@ Outcome play_all(Playback& play, const ExportPcapOptions& options, TickSpan& tic
     if (const auto done = play_frame(play, tick - first); !done) return refuse(options.input, place_of_tick(tick), done.error());
     ticks.add(tick);
     progress.update(ticks.count());
-    const auto more = play.reader.next(play.frame);
-    if (!more) return refuse(options.input, more.error());
-    if (!*more) break;
+    TACTUS_TRY(const bool more, next_frame(play.reader, play.frame, options.input));
+    if (!more) break;
   }
   play.network->leave();
   return {};
@@ -123,12 +122,11 @@ Value value_of(const ExportPcapOptions& options, const Playback& play, const Ses
 
 Outcome run(const ExportPcapOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
-  auto reader = open_trace(options.input);
+  auto reader = open_trace(options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   TraceFrame first;
-  const auto any = reader->next(first);
-  if (!any) return refuse(options.input, any.error());
-  if (!*any) {
+  TACTUS_TRY(const bool any, next_frame(*reader, first, options.input));
+  if (!any) {
     TACTUS_CHECK(check_ending(options.input, *reader, 0));
     return refuse(shown_path(options.input) + ": the trace has no frames", "Record or simulate at least one tick.");
   }

@@ -13,6 +13,7 @@
 #include <tactus/base/shown.h>
 #include <tactus/trace/csv.h>
 #include <tactus/trace/csv_plan.h>
+#include "cli/options/contact_option.h"
 #include "cli/report/notes.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
@@ -28,11 +29,12 @@ struct ImportOptions {
   double length_scale = -1;  // [m] below 0: not given
   std::uint32_t tick_rate = 0;
   bool list_presets = false;
-  std::string time_unit, angle_unit, force_unit, quaternion_order, euler_order, axes, object_column, names;
+  std::string time_unit, angle_unit, force_unit, quaternion_order, euler_order, date_order, axes, object_column, names;
   std::vector<std::string> missing;
   std::uint32_t skip_lines = 0;
   double gap = -1;  // [s] below 0: not given
-  bool no_resample = false, strict = false, keep_last = false, skip_bad = false;
+  bool no_resample = false, restarts = false, strict = false, keep_last = false, skip_bad = false;
+  ContactArguments contacts;
   CommonOptions common;
 };
 
@@ -77,12 +79,13 @@ Outcome apply_map(const std::string& text, CsvMapping& mapping) {
                                                               {"velocity", subject.velocity},
                                                               {"angular_velocity", subject.angular_velocity},
                                                               {"device", subject.device},
+                                                              {"device_rotation", subject.device_rotation},
                                                               {"force", subject.force}};
   const auto target = targets.find(quantity);
   if (equals == std::string::npos || target == targets.end()) {
     return refuse_arguments("--map '" + text + "': not QUANTITY=COLUMNS",
                             "Quantities are position, rotation (w,x,y,z), euler, rotation_vector, rotation_matrix, velocity, "
-                            "angular_velocity, device and force; with several objects NAME.position and so on.");
+                            "angular_velocity, device, device_rotation and force; with several objects NAME.position and so on.");
   }
   const auto columns = split(std::string_view(text).substr(equals + 1));
   if (columns.size() != target->second.size()) {
@@ -127,6 +130,8 @@ Outcome apply_meaning(const ImportOptions& options, CsvMapping& mapping) {
   mapping.euler_order = options.euler_order;
   if (options.quaternion_order == "wxyz") mapping.quaternion_order = QuaternionOrder::wxyz;
   if (options.quaternion_order == "xyzw") mapping.quaternion_order = QuaternionOrder::xyzw;
+  if (options.date_order == "mdy") mapping.date_order = CsvDateOrder::mdy;
+  if (options.date_order == "dmy") mapping.date_order = CsvDateOrder::dmy;
   if (!options.axes.empty()) {
     TACTUS_TRY(mapping.axes, read_axes(options.axes));
   }
@@ -138,6 +143,8 @@ Outcome apply_meaning(const ImportOptions& options, CsvMapping& mapping) {
   if (options.gap == 0) return refuse_arguments("--gap: not above 0", "Give a time, such as 100ms.");
   if (options.gap > 0) mapping.gap = options.gap;
   mapping.resample = !options.no_resample;
+  mapping.restarts = options.restarts;
+  mapping.contacts = options.contacts.declared();
   mapping.strict = options.strict;
   mapping.keep_last = options.keep_last;
   mapping.skip_bad = options.skip_bad;
@@ -159,19 +166,25 @@ Outcome check_used(const ImportOptions& options, const CsvMapping& mapping) {
     const bool any_given = !options.time_unit.empty() || !options.angle_unit.empty() || !options.force_unit.empty() ||
                            !options.axes.empty() || !options.quaternion_order.empty() || !options.euler_order.empty() ||
                            !options.object_column.empty() || !options.missing.empty() || options.gap > 0 || options.no_resample ||
-                           options.skip_bad || options.strict;
+                           options.skip_bad || options.strict || options.restarts || !options.date_order.empty() ||
+                           !mapping.contacts.empty();
     return any_given
                ? unused("tables of `tactus export csv`", "they say themselves what they hold; options of other tables do nothing")
                : Outcome();
   }
   if (!options.euler_order.empty() && !euler) return unused("--euler-order", "no Euler angles are mapped");
   if (!options.angle_unit.empty() && !angles) return unused("--angle-unit", "no angles are mapped");
-  if (!options.quaternion_order.empty() && !any([](const CsvQuantities& q) { return !q.rotation[0].empty(); }))
+  if (!options.quaternion_order.empty() &&
+      !any([](const CsvQuantities& q) { return !q.rotation[0].empty() || !q.device_rotation[0].empty(); }))
     return unused("--quaternion-order", "no rotation of four numbers is mapped");
   if (!options.force_unit.empty() && !any([](const CsvQuantities& q) { return !q.force[0].empty(); }))
     return unused("--force-unit", "no force is mapped");
-  if (mapping.time.empty() && (!options.time_unit.empty() || options.no_resample))
-    return unused(options.no_resample ? "--no-resample" : "--time-unit", "no column of time is named (--time COLUMN)");
+  const std::pair<const char*, bool> of_times[]{{"--time-unit", !options.time_unit.empty()},
+                                                {"--date-order", !options.date_order.empty()},
+                                                {"--no-resample", options.no_resample},
+                                                {"--restarts", options.restarts}};
+  for (const auto& [option, is_given] : of_times)
+    if (mapping.time.empty() && is_given) return unused(option, "no column of time is named (--time COLUMN)");
   return {};
 }
 
@@ -281,8 +294,10 @@ Outcome run(const ImportOptions& options) {
 
 /// How lines and numbers of a table are meant.
 void add_text_options(Command& command, ImportOptions& options) {
-  command.add_option("--time-unit", options.time_unit, "Unit of the times [of the column's name, or s]")
-      ->one_of({"s", "ms", "us", "ns", "min"})
+  command
+      .add_option("--time-unit", options.time_unit,
+                  "Unit of the times [of the column's name, or s]; tick: they count ticks of --tick-rate")
+      ->one_of({"s", "ms", "us", "ns", "min", "h", "day", kTickUnit})
       ->type_name("UNIT");
   command.add_option("--angle-unit", options.angle_unit, "Unit of angles and of angular velocities [of the names]")
       ->one_of({"rad", "deg"})
@@ -292,8 +307,11 @@ void add_text_options(Command& command, ImportOptions& options) {
       ->type_name("UNIT");
   command
       .add_option("--quaternion-order", options.quaternion_order,
-                  "Order in which the columns of a rotation are listed [as they are called, or wxyz]")
+                  "Order in which the columns of a rotation are listed [as they are called, or as the first one tells]")
       ->one_of({"wxyz", "xyzw"})
+      ->type_name("ORDER");
+  command.add_option("--date-order", options.date_order, "Which number of 05/06/2024 is the month [asked for where it matters]")
+      ->one_of({"mdy", "dmy"})
       ->type_name("ORDER");
   command
       .add_option("--euler-order", options.euler_order,
@@ -313,6 +331,7 @@ void add_text_options(Command& command, ImportOptions& options) {
   add_quantity(command, "--gap", options.gap, Dimension::time,
                "Missing samples are put in between two so far apart [100ms, or 3 samples]");
   command.add_flag("--no-resample", options.no_resample, "Round times to ticks, and refuse two in one");
+  command.add_flag("--restarts", options.restarts, "Where the time falls, the next recording begins");
   command.add_flag("--strict", options.strict, "Refuse what is missing, out of order, repeated or cut");
   command.add_flag("--keep-last", options.keep_last, "Take a last line that has no end");
   command.add_flag("--skip-bad", options.skip_bad, "Leave out rows that cannot be read");
@@ -334,14 +353,16 @@ void setup_import(Command& app, Action& action) {
       .add_option("--map", options->maps,
                   "Columns of one quantity: position, rotation (w,x,y,z), euler, rotation_vector, rotation_matrix, velocity, "
                   "angular_velocity, "
-                  "device or force, such as position=x,y,z, device=x,y,0 of a plane, cup.position=#2,#3,#4 of one of several "
+                  "device, device_rotation or force, such as position=x,y,z, device=x,y,0 of a plane, cup.position=#2,#3,#4 of "
+                  "one of several "
                   "objects; may "
                   "be repeated")
       ->one_value()
       ->type_name("QUANTITY=COLUMNS");
   command
       .add_option("--time", options->time,
-                  "Column with the time: a number, a date with a time of day (ISO 8601), or a time of day")
+                  "Column with the time: a number, a date with a time of day, or a time of day; or two columns, as date,time or "
+                  "sec,nanosec")
       ->type_name("COLUMN");
   command.add_option("--segment", options->segment, "Column that separates the recordings of a table")->type_name("COLUMN");
   command.add_option("--object", options->object, "Name of the object")->type_name("NAME");
@@ -360,6 +381,7 @@ void setup_import(Command& app, Action& action) {
       ->one_of({"world", "body"})
       ->type_name("FRAME");
   add_text_options(command, *options);
+  options->contacts.add_to(command);
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
@@ -371,6 +393,8 @@ void setup_import(Command& app, Action& action) {
       "  tactus import csv optitrack.csv --time 'Time (Seconds)' --map 'position=Position X,Position Y,Position Z' --axes y-up "
       "-o cup.mcap\n"
       "  tactus import csv savetxt.txt --time '#1' --map 'position=#2,#3,#4' --map 'force=#5,#6,#7' -o hand.mcap\n"
+      "  tactus import csv arm.csv --time t --map position=x,y,z --map force=fx,fy,fz --contact user=object,k=500N/m,at=origin "
+      "-o arm.mcap\n"
       "  tactus import csv two.csv --time t_ms --map cup.position=cx,cy,cz --map lid.position=lx,ly,lz -o two.mcap\n"
       "Commas, semicolons, tabs or blanks separate fields; lines that begin with #, % or // are comments. Units are read from "
       "names (t_ms,\n"

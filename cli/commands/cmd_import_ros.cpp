@@ -2,7 +2,6 @@
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/commands.h"
 #include "cli/commands/input.h"
-#include "cli/report/notes.h"
 #include "cli/report/report.h"
 
 namespace tactus::cli {
@@ -14,31 +13,32 @@ struct ImportRosOptions {
   CommonOptions common;
 };
 
+Outcome copy(TraceReader& reader, TraceWriter& writer, const ImportRosOptions& options, Report& report) {
+  constexpr std::uint64_t kTicksBetween = 256;  // two looks at the bytes read
+  Progress progress("import", reader.bytes().all, options.common.progress());
+  TraceFrame frame;
+  while (true) {
+    if (report.ticks.count() % kTicksBetween == 0) progress.update(reader.bytes().read);
+    TACTUS_TRY(const bool more, next_frame(reader, frame, options.input));
+    if (!more) return {};
+    if (const auto written = writer.write(frame); !written)
+      return refuse(options.output, place_of_tick(frame.tick), written.error());
+    report.ticks.add(frame.tick);
+  }
+}
+
 Outcome run(const ImportRosOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
-  TACTUS_TRY(auto reader, open_trace(options.input, options.input, options.read));
+  TACTUS_TRY(auto reader, open_trace(options.input, options.input, options.common.progress(), options.read));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
   auto writer = TraceWriter::create(output.working_path(), reader.info());
   if (!writer) return refuse(options.output, writer.error());
   Report report{.command = "import ros", .files = {{"recording", options.input}, {"trace", options.output}}};
-  Progress progress("import", reader.frame_count(), options.common.progress());
-  TraceFrame frame;
-  while (true) {
-    const auto more = reader.next(frame);
-    if (!more) {
-      const Diagnostic why = reader.explain(more.error());
-      return refuse(options.input, why.detail, why.error);
-    }
-    if (!*more) break;
-    if (const auto written = writer->write(frame); !written)
-      return refuse(options.output, place_of_tick(frame.tick), written.error());
-    report.ticks.add(frame.tick);
-    progress.update(report.ticks.count());
-  }
+  TACTUS_CHECK(copy(reader, *writer, options, report));
   TACTUS_CHECK(check_ending(options.input, reader, report.ticks.count()));
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   report.describe(reader.info());
-  for (const ReadNote& note : reader.notes()) report.warnings.push_back(text_of(note));
+  report.add(reader.notes());
   TACTUS_CHECK(output.keep());
   print(report, options.common, beside(options.output));
   return {};
@@ -48,7 +48,8 @@ Outcome run(const ImportRosOptions& options) {
 
 void setup_import_ros(Command& group, Action& action) {
   auto options = std::make_shared<ImportRosOptions>();
-  Command& command = group.add_command("ros", "A ROS 2 recording (MCAP): poses, odometry, transforms, twists and wrenches");
+  Command& command =
+      group.add_command("ros", "A ROS 2 recording (MCAP, or a bag's folder): poses, odometry, transforms, twists and wrenches");
   command.add_option("FILE", options->input, "Recording to read, - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")
       ->type_name("FILE")

@@ -6,20 +6,21 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <tactus/base/shown.h>
-#include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/input.h"
 #include "cli/options/options_codec.h"
 #include "cli/output.h"
+#include "cli/progress.h"
 #include "cli/report/info.h"
 #include "cli/report/json.h"
+#include "cli/report/notes.h"
+#include "cli/report/report.h"
 #include "cli/report/table.h"
 #ifdef TACTUS_HAS_SIM
 #include <tactus/sim/scene/scene.h>
@@ -57,48 +58,47 @@ std::optional<Error> for_each_packet(Player& player, OnPacket on_packet) {
   }
 }
 
-/// One line of the list of packets. Columns that no packet has are left out.
+/// The list of packets. They can be too many to be kept: the stream is played once for the widths, and again to print. Columns that no
+/// packet has are left out.
 class PacketTable {
  public:
-  void note(const Json& packet) {
-    for (const auto& item : packet.items()) seen_.insert(item.key());
+  void look(const Json& packet) {
+    const std::vector<std::string> row = cells(packet);
+    for (std::size_t i = 0; i < row.size(); ++i) seen_[i] = seen_[i] || !row[i].empty();
+    columns_.look(row, false);
   }
-  std::vector<std::string> heading() const {
-    std::vector<std::string> out;
-    for (const auto& [key, property] : items_["properties"].items())
-      if (seen_.contains(key)) out.push_back(property["title"]);
-    return out;
-  }
-  std::vector<std::string> row(const Json& packet) const {
-    std::vector<std::string> out;
-    for (const auto& [key, property] : items_["properties"].items()) {
-      if (!seen_.contains(key)) continue;
-      const std::string cell = packet.contains(key) ? cell_of(packet[key], property, root_) : "";
-      out.push_back(cell.empty() ? "-" : cell);
-    }
-    return shown_cells(std::move(out));
+  void print(Bytes bytes) {
+    std::vector<std::string> heading;
+    for (const auto& [key, property] : properties_.items()) heading.push_back(property["title"]);
+    for (std::size_t i = 0; i < seen_.size(); ++i)
+      if (!seen_[i]) heading[i].clear();
+    columns_.look(heading, true);
+    fmt::print("\n");
+    print_heading(stdout, columns_.aligned(heading));
+    if (auto player = Player::open(bytes))
+      for_each_packet(*player, [&](const PlayedPacket& played) { print_row(packet_info_value(played, player->scene()).json); });
   }
 
  private:
-  const Json& root_ = schema("info");
-  const Json& items_ = root_["oneOf"][0]["properties"]["packet_list"]["items"];
-  std::set<std::string> seen_;
-};
+  std::vector<std::string> cells(const Json& packet) const {
+    std::vector<std::string> out;
+    for (const auto& [key, property] : properties_.items()) {
+      const auto member = packet.find(key);
+      out.push_back(member == packet.end() ? "" : cell_of(*member, property));
+    }
+    return shown_cells(std::move(out));
+  }
+  void print_row(const Json& packet) const {
+    std::vector<std::string> row = cells(packet);
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (seen_[i] && row[i].empty()) row[i] = "-";
+    fmt::print("{}\n", columns_.aligned(row));
+  }
 
-/// Packets can be too many to be kept: the stream is played again for the widths, and again to print.
-void print_packets(Bytes bytes, const PacketTable& table) {
-  Columns columns;
-  columns.look(table.heading(), true);
-  const auto each = [&](auto look) {
-    if (auto player = Player::open(bytes))
-      for_each_packet(*player,
-                      [&](const PlayedPacket& played) { look(table.row(packet_info_value(played, player->scene()).json)); });
-  };
-  each([&](const std::vector<std::string>& row) { columns.look(row, false); });
-  fmt::print("\n");
-  print_heading(stdout, columns.aligned(table.heading()));
-  each([&](const std::vector<std::string>& row) { fmt::print("{}\n", columns.aligned(row)); });
-}
+  const Json& properties_ = schema("info")["oneOf"][0]["properties"]["packet_list"]["items"]["properties"];
+  std::vector<bool> seen_ = std::vector<bool>(properties_.size());
+  Columns columns_;
+};
 
 /// The same as the last member of the JSON object `info`.
 void print_with_packets(Bytes bytes, const Json& info) {
@@ -129,60 +129,86 @@ Outcome info_stream(const InfoOptions& options) {
   const bool is_table = options.packets && !options.common.json;
   const std::optional<Error> error = for_each_packet(*player, [&](const PlayedPacket& played) {
     totals.add(played);
-    if (is_table) table.note(packet_info_value(played, player->scene()).json);
+    if (is_table) table.look(packet_info_value(played, player->scene()).json);
   });
   const Value info = stream_info_value(*player, totals, bytes.size(), {error, player->complete()});
   if (options.packets && options.common.json) print_with_packets(bytes, info.json);
   else print(info, "info", options.common);
-  if (is_table && !totals.is_empty()) print_packets(bytes, table);
+  if (is_table && !totals.is_empty()) table.print(bytes);
   return end_of(options, error);
 }
 
-/// Topics with their types and message counts, from the container alone.
-tl::expected<Json, Failure> channels_json(const InfoOptions& options) {
-  const std::string& path = options.input;
-  auto source = ByteSource::open_file(options.readable);
-  if (!source) return refuse(path, source.error());
-  auto reader = mcap::Reader::open(std::move(*source));
-  if (!reader) return refuse(path, reader.error());
-  std::map<std::uint16_t, std::uint64_t> counts;
-  while (true) {
-    const auto item = reader->next();
-    if (!item) return refuse(path, item.error());
-    if (*item == mcap::Item::end) break;
-    if (*item == mcap::Item::message) ++counts[reader->message().channel_id];
-  }
+Json topics_json(const std::vector<TraceTopic>& topics) {
   Json list = Json::array();
-  for (const auto& [id, channel] : reader->channels()) {
-    const auto schema = reader->schemas().find(channel.schema_id);
-    list.push_back({{"topic", channel.topic},
-                    {"type", schema == reader->schemas().end() ? "-" : schema->second.name},
-                    {"messages", counts[id]}});
-  }
+  for (const TraceTopic& topic : topics)
+    list.push_back({{"topic", topic.topic}, {"type", topic.type.empty() ? "-" : topic.type}, {"messages", topic.messages}});
   return list;
 }
 
+/// Users who feel forces without any contact: of them a stream promises nothing.
+class UnboundForces {
+ public:
+  explicit UnboundForces(const TraceInfo& info) : info_(info), users_(info.users.size()) {}
+  void add(const TraceFrame& frame) {
+    for (std::size_t i = 0; i < users_.size(); ++i) {
+      const UserSample& user = frame.users[i];
+      users_[i].has_force = users_[i].has_force || norm(user.force) > 0 || norm(user.server_force) > 0;
+      users_[i].has_contact = users_[i].has_contact || user.contact.kind != ContactKind::none || user.surface_contact;
+    }
+  }
+  void tell(Json& out) const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < users_.size(); ++i)
+      if (users_[i].has_force && !users_[i].has_contact) names.push_back(info_.users[i].name);
+    if (names.empty()) return;
+    out["users_without_force_bound"] = names;
+    out["force_bound"] = missing_force_bound(names, "`tactus encode --contact`");
+  }
+
+ private:
+  struct User {
+    bool has_force = false, has_contact = false;
+  };
+  const TraceInfo& info_;
+  std::vector<User> users_;
+};
+
+/// Ticks of a trace.
+struct TickTotals {
+  std::uint64_t frames = 0;
+  std::int64_t first = 0, last = 0;
+  std::vector<std::uint64_t> shapes;  ///< new ones, of each mesh
+};
+
+tl::expected<TickTotals, Failure> read_ticks(TraceReader& reader, const InfoOptions& options, UnboundForces& unbound) {
+  constexpr std::uint64_t kFramesBetween = 256;  // two looks at the bytes read
+  Progress progress("info", reader.bytes().all, Visibility::shown);
+  TickTotals totals{.shapes = std::vector<std::uint64_t>(reader.info().meshes.size())};
+  TraceFrame frame;
+  while (true) {
+    if (totals.frames % kFramesBetween == 0) progress.update(reader.bytes().read);
+    TACTUS_TRY(const bool more, next_frame(reader, frame, options.input));
+    if (!more) return totals;
+    unbound.add(frame);
+    for (std::size_t i = 0; i < totals.shapes.size(); ++i) totals.shapes[i] += frame.meshes[i].updated ? 1U : 0U;
+    if (totals.frames++ == 0) totals.first = frame.tick;
+    totals.last = frame.tick;
+  }
+}
+
 Outcome info_trace(const InfoOptions& options) {
-  auto reader = open_trace(options.readable, options.input);
+  auto reader = open_trace(options.readable, options.input, Visibility::shown);
   if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& trace = reader->info();
   note_idle_options(*options.common.command, subjects_of(trace), "trace");
-  TraceFrame frame;
-  std::uint64_t frames = 0;
-  std::int64_t first = 0;
-  std::vector<std::uint64_t> shapes(trace.meshes.size());
-  while (true) {
-    const auto more = reader->next(frame);
-    if (!more) return refuse(options.input, more.error());
-    if (!*more) break;
-    for (std::size_t i = 0; i < shapes.size(); ++i) shapes[i] += frame.meshes[i].updated ? 1U : 0U;
-    if (frames++ == 0) first = frame.tick;
-  }
-  TACTUS_TRY(auto channels, channels_json(options));
-  Value info = trace_info_value(trace, {frames, first, frame.tick, !reader->cut_short(), shapes});
-  info.json["channels"] = std::move(channels);
+  UnboundForces unbound(trace);
+  TACTUS_TRY(const TickTotals ticks, read_ticks(*reader, options, unbound));
+  Value info = trace_info_value(trace, {ticks.frames, ticks.first, ticks.last, !reader->cut_short(), ticks.shapes});
+  info.json["channels"] = topics_json(reader->topics());
+  unbound.tell(info.json);
+  if (const auto notes = texts_of(reader->notes()); !notes.empty()) info.json["notes"] = notes;
   print(info, "info", options.common);
-  return check_ending(options.input, *reader, frames);
+  return check_ending(options.input, *reader, ticks.frames);
 }
 
 #ifdef TACTUS_HAS_SIM
@@ -203,10 +229,9 @@ Outcome run(const InfoOptions& options) {
   InfoOptions readable = options;
   readable.readable = input.path();
   std::ifstream file(readable.readable, std::ios::binary);
-  std::string magic(mcap::kMagic.size(), '\0');
+  std::string magic(4, '\0');
   file.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-  if (magic.substr(0, 5) == "\x89MCAP") return info_trace(readable);
-  return info_stream(readable);
+  return magic == "\x89TCT" ? info_stream(readable) : info_trace(readable);  // what is neither is named there
 }
 
 }  // namespace
@@ -217,7 +242,7 @@ void setup_info(Command& app, Action& action) {
   options->common.command = &command;
   command
       .add_option("FILE", options->input,
-                  "Stream (.tct), trace (.mcap) or scene (.toml); - is a stream or trace on standard input")
+                  "Stream (.tct), trace (.mcap, or a bag's folder) or scene (.toml); - is a stream or trace on standard input")
       ->type_name("")
       ->required();
   command.add_flag("--packets", options->packets, "List every packet of a stream");

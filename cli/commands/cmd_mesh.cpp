@@ -11,6 +11,7 @@
 #include <tactus/base/shown.h>
 #include <tactus/sim/tets/tet_files.h>
 #include <tactus/sim/tets/tet_mesh.h>
+#include "cli/options/option_needs.h"
 #include "cli/report/json.h"
 #include "cli/report/notes.h"
 #include "cli/report/report.h"
@@ -23,7 +24,7 @@ namespace tactus::cli {
 namespace {
 
 struct MeshOptions {
-  std::string input, slab, output;
+  std::string input, slab, output, node, axes;
   double cell = 0.01;      // [m]
   double length_unit = 1;  // [m]
   double edge = 0;         // [m], 0: as large as may be
@@ -83,16 +84,23 @@ Outcome read_tets(const MeshOptions& options, TetMeshReport& report) {
 }
 
 #ifdef TACTUS_HAS_SURFACE
+sim::Axes axes_of(const std::string& text) {
+  return text == "y-up" ? sim::Axes::y_up : text == "z-up" ? sim::Axes::z_up : sim::Axes::as_the_format_says;
+}
+
 /// Volume of a regular tetrahedron.
 double volume_of_edge(double edge) { return edge * edge * edge / (6 * std::numbers::sqrt2); }
 
 Outcome fill_surface(const MeshOptions& options, TetMeshReport& report) {
-  auto file =
-      report.measure("read", [&] { return sim::read_surface(options.input, {.drop_degenerate = options.drop_degenerate}); });
+  const bool is_gltf = options.input.ends_with(".glb") || options.input.ends_with(".gltf");
+  note_idle_options(*options.common.command, is_gltf ? std::set{Subject::surface, Subject::gltf} : std::set{Subject::surface},
+                    "file");
+  const sim::SurfaceOptions how{.drop_degenerate = options.drop_degenerate, .axes = axes_of(options.axes), .node = options.node};
+  auto file = report.measure("read", [&] { return sim::read_surface(options.input, how); });
   if (!file) return refuse(file.error());
   Report told;
   tell(file->notes.all(), options.input, told);
-  report.warnings = std::move(told.warnings);
+  report.warnings = std::move(told.notes);
   if (file->dropped_faces > 0) report.notes.emplace_back("dropped_faces", file->dropped_faces);
   if (file->polygons > 0) report.notes.emplace_back("cut_polygons", file->polygons);
   if (file->unused_vertices > 0) report.notes.emplace_back("unused_vertices", file->unused_vertices);
@@ -113,7 +121,7 @@ Outcome fill_surface(const MeshOptions& options, TetMeshReport& report) {
 #else
 Outcome fill_surface(const MeshOptions& options, TetMeshReport&) {
   return refuse(shown_path(options.input) + ": this program was built without reading surfaces",
-                "Install libopenmesh-dev and build again, or give .node, .ele or .msh.");
+                "Install nlohmann-json3-dev and build again, or give .node, .ele or .msh.");
 }
 #endif
 
@@ -181,11 +189,19 @@ Outcome run(const MeshOptions& options) {
 
 }  // namespace
 
+void add_scene_options(Command& command, std::string& node, std::string& axes) {
+  command.add_option("--node", node, "Of a glTF scene, take what hangs on the node of this name [all]")->type_name("NAME");
+  command.add_option("--axes", axes, "What is up in the file: y-up, which is turned, or z-up [glTF: y-up, others: z-up]")
+      ->one_of({"y-up", "z-up"})
+      ->type_name("");
+}
+
 void setup_mesh(Command& app, Action& action) {
   auto options = std::make_shared<MeshOptions>();
   Command& command = app.add_command("mesh", "Fill a surface with tetrahedra, or make a slab of them");
   Option* input =
-      command.add_option("FILE", options->input, "Surface (.obj, .ply, .stl, .off) or tetrahedra (.node, .ele, .msh)")
+      command
+          .add_option("FILE", options->input, "Surface (.obj, .ply, .stl, .off, .gltf, .glb) or tetrahedra (.node, .ele, .msh)")
           ->type_name("");
   Option* slab = command.add_option("--slab", options->slab, "Cells along x, y, z, six tetrahedra each, such as 16x20x1")
                      ->type_name("NxNxN");
@@ -210,6 +226,7 @@ void setup_mesh(Command& app, Action& action) {
       .add_flag("--split-surface", options->split_surface,
                 "Add points on the surface too, so that --edge and --quality hold there")
       ->excludes(slab);
+  add_scene_options(command, options->node, options->axes);
   command.add_flag("--drop-degenerate", options->drop_degenerate, "Leave out faces of a surface that have no area")
       ->excludes(slab);
   add_quantity(command, "--time-limit", options->time_limit, Dimension::time, "Give up after this long [60s]")

@@ -16,6 +16,7 @@
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/commands.h"
 #include "cli/commands/input.h"
+#include "cli/options/option_needs.h"
 #include "cli/report/notes.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
@@ -27,13 +28,19 @@ namespace tactus::cli {
 namespace {
 
 struct ImportMeshOptions {
-  std::string input, output, series, name = "mesh";
+  std::string input, output, series, node, animation, axes, name = "mesh";
   double rate = 60;        // [Hz]
   double period = 0;       // [s], 0: that of the rate
   double length_unit = 1;  // [m]
   bool drop_degenerate = false;
   CommonOptions common;
 };
+
+sim::Axes axes_of(const std::string& text) {
+  return text == "y-up" ? sim::Axes::y_up : text == "z-up" ? sim::Axes::z_up : sim::Axes::as_the_format_says;
+}
+
+double period_of(const ImportMeshOptions& options) { return options.period > 0 ? options.period : 1 / options.rate; }
 
 /// When frames come: in ticks of a whole number per second.
 struct Clock {
@@ -52,7 +59,7 @@ bool fits(const sim::SurfaceSequence& sequence, double period) {
 
 /// The slowest of the usual clocks on whose ticks every frame falls; where none is found, the fastest.
 Clock clock_of(const ImportMeshOptions& options, const sim::SurfaceSequence& sequence) {
-  const double period = options.period > 0 ? options.period : 1 / options.rate;
+  const double period = period_of(options);
   if (const double rate = std::round(1 / period); rate >= 1 && std::abs(rate * period - 1) < 1e-9 && fits(sequence, 1))
     return {static_cast<std::uint32_t>(rate), 1};
   for (const std::uint32_t rate : {1000u, 10'000u, 100'000u, kMaxTickRate})
@@ -67,9 +74,7 @@ Outcome check_folder(const std::string& input) {
   std::string ending = std::filesystem::path(input).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr std::array<std::pair<const char*, const char*>, 7> kKnown{{{".glb", "a glTF 2.0 scene (GLB)"},
-                                                                       {".gltf", "a glTF scene"},
-                                                                       {".fbx", "an FBX scene"},
+  constexpr std::array<std::pair<const char*, const char*>, 5> kKnown{{{".fbx", "an FBX scene"},
                                                                        {".abc", "an Alembic cache"},
                                                                        {".blend", "a Blender file"},
                                                                        {".usd", "a USD scene"},
@@ -77,8 +82,8 @@ Outcome check_folder(const std::string& input) {
   const auto known = std::find_if(kKnown.begin(), kKnown.end(), [&](const auto& k) { return ending == k.first; });
   if (known == kKnown.end()) return {};
   return refuse(fmt::format("{}: {}, not a folder of frames", shown_path(input), known->second),
-                "In Blender: import or open it, then File, Export, Wavefront (.obj) with Animation ticked; give the folder of "
-                "these files.");
+                "In Blender: import or open it, then File, Export, glTF 2.0 (.glb), and give that file; or Wavefront (.obj) with "
+                "Animation ticked, and give the folder of these files.");
 }
 
 /// What is kept of a frame is its distance from the first.
@@ -118,9 +123,16 @@ std::string name_mistake(const std::string& name) {
 Outcome run(const ImportMeshOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   TACTUS_CHECK(check_folder(options.input));
+  const bool is_gltf = options.input.ends_with(".glb") || options.input.ends_with(".gltf");
+  note_idle_options(*options.common.command, {Subject::surface, Subject::deformed, is_gltf ? Subject::gltf : Subject::frames},
+                    "input");
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing()));
-  const auto sequence =
-      sim::SurfaceSequence::open(options.input, {.series = options.series, .drop_degenerate = options.drop_degenerate});
+  const auto sequence = sim::SurfaceSequence::open(options.input, {.series = options.series,
+                                                                   .drop_degenerate = options.drop_degenerate,
+                                                                   .axes = axes_of(options.axes),
+                                                                   .node = options.node,
+                                                                   .animation = options.animation,
+                                                                   .period = period_of(options)});
   if (!sequence) return refuse(sequence.error());
   TriMesh rest = sequence->rest();
   for (Vec3& p : rest.vertices) p = options.length_unit * p;
@@ -153,8 +165,10 @@ Outcome run(const ImportMeshOptions& options) {
 
 void setup_import_mesh(Command& group, Action& action) {
   auto options = std::make_shared<ImportMeshOptions>();
-  Command& command = group.add_command("mesh", "A folder of OBJ, PLY or OFF files, one per frame of a mesh that moves");
-  command.add_option("FOLDER", options->input, "Folder with the frames, in the order of the numbers in their names")
+  Command& command = group.add_command("mesh", "A mesh that moves: a folder of OBJ, PLY or OFF files, or a glTF scene");
+  command
+      .add_option("FRAMES", options->input,
+                  "Folder, one file per frame, in the order of the numbers in their names; or .glb, .gltf")
       ->type_name("")
       ->required();
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")
@@ -169,13 +183,16 @@ void setup_import_mesh(Command& group, Action& action) {
       ->check(within(Dimension::length, "1um", "1000000m"));
   command.add_option("--series", options->series, "Take the frames whose names have this form, * stands for anything [all]")
       ->type_name("PATTERN");
+  command.add_option("--animation", options->animation, "Animation of a glTF scene [the only one]")->type_name("NAME");
+  add_scene_options(command, options->node, options->axes);
   command.add_flag("--drop-degenerate", options->drop_degenerate, "Leave out faces that have no area in the first frame");
   command.add_option("--name", options->name, "Name of the mesh [mesh]")->check(name_mistake)->type_name("NAME");
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
       "  tactus import mesh horse/ --rate 30 --length-unit 1mm -o horse.mcap\n"
-      "  tactus import mesh shapes/ --period 17ms -o membrane.mcap");
+      "  tactus import mesh shapes/ --period 17ms -o membrane.mcap\n"
+      "  tactus import mesh clip.glb --node Hand --rate 120 -o hand.mcap");
   on_chosen<ImportMeshOptions>(command, action, options, run);
 }
 
@@ -215,7 +232,7 @@ tl::expected<std::size_t, Failure> find_mesh(const ExportMeshOptions& options, c
 }
 
 Outcome run(const ExportMeshOptions& options) {
-  auto reader = open_trace(options.input);
+  auto reader = open_trace(options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   TACTUS_TRY(const auto index, find_mesh(options, reader->info()));
   TACTUS_TRY(const auto target, target_of(options.output));
@@ -230,9 +247,8 @@ Outcome run(const ExportMeshOptions& options) {
   report.timings = {{"write"}};
   std::uint64_t count = 0;
   while (true) {
-    const auto more = reader->next(frame);
-    if (!more) return refuse(options.input, more.error());
-    if (!*more) break;
+    TACTUS_TRY(const bool more, next_frame(*reader, frame, options.input));
+    if (!more) break;
     report.ticks.add(frame.tick);
     if (!frame.meshes[index].updated) continue;
     const std::vector<float>& u = frame.meshes[index].displacements;

@@ -18,7 +18,7 @@
 #include "cli/commands/input.h"
 #include "cli/commands/scene_run.h"
 #include "cli/commands/stiffness_map.h"
-#include "cli/figure/motion_figure.h"
+#include "cli/figure/time_figure.h"
 #include "cli/live/ticker.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_link.h"
@@ -185,8 +185,8 @@ Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report
   const StopOnSignal stop;
   for (std::int64_t i = 0; i < ticks && StopOnSignal::caught() == 0; ++i) {
     if (run.recording) {
-      const auto more = run.recording->next(run.recorded);
-      if (!more) return refuse_after(refuse(options.replay, more.error()).value(), run, report);
+      const auto more = next_frame(*run.recording, run.recorded, options.replay);
+      if (!more) return refuse_after(more.error(), run, report);
       if (!*more) {
         TACTUS_CHECK(check_ending(options.replay, *run.recording, report.ticks.count()));
         break;
@@ -373,7 +373,7 @@ Outcome run(const SimOptions& options) {
   if (!simulation) return refuse(options.scene, simulation.error());
   std::optional<TraceReader> recording;
   if (!options.replay.empty()) {
-    TACTUS_TRY(auto reader, open_replay(options.replay));
+    TACTUS_TRY(auto reader, open_replay(options.replay, options.common.progress()));
     recording.emplace(std::move(reader));
   }
   TACTUS_CHECK(

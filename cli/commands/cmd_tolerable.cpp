@@ -88,9 +88,8 @@ tl::expected<DelayTolerance, Failure> of_trace(const TolerableOptions& options, 
   TraceFrame frame;
   std::uint64_t read = 0;
   for (;; ++read) {
-    const auto more = reader.next(frame);
-    if (!more) return refuse(options.input, more.error());
-    if (!*more) break;
+    TACTUS_TRY(const bool more, next_frame(reader, frame, options.input));
+    if (!more) break;
     out.add(frame);
     progress.update(read + 1);
   }
@@ -126,7 +125,7 @@ Outcome run(const TolerableOptions& options) {
 #ifdef TACTUS_HAS_SIM
   if (TolerableScene::is_meant(options.input)) return run_scene(options);
 #endif
-  auto reader = open_trace(options.input);
+  auto reader = open_trace(options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   if (reader->info().users.empty())
     return refuse(shown_path(options.input) + ": nobody is in this recording", "Give one with a user, as `tactus sim` makes.");

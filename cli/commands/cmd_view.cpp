@@ -77,9 +77,8 @@ tl::expected<Json, Failure> truth_json(const ViewOptions& options, TraceReader& 
   std::optional<TruthData> data;
   TraceFrame frame;
   while (true) {
-    const auto more = reader.next(frame);
-    if (!more) return refuse(options.truth, more.error());
-    if (!*more) break;
+    TACTUS_TRY(const bool more, next_frame(reader, frame, options.truth));
+    if (!more) break;
     if (!data) {
       auto created = TruthData::create(reader.info(), frame, player.scene());
       if (!created) return refuse(options.truth, created.error());
@@ -126,7 +125,7 @@ tl::expected<Json, Failure> page_data(const ViewOptions& options, const std::str
   std::string attached;
   report.describe(replica_info(player->scene(), ""));
   if (!options.truth.empty()) {
-    auto reader = open_trace(options.truth);
+    auto reader = open_trace(options.truth, options.common.progress());
     if (!reader) return tl::unexpected(reader.error());
     TACTUS_CHECK(check_same_scene(options, reader->info(), player->scene()));
     attached = reader->info().scene;

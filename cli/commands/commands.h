@@ -41,6 +41,9 @@ void setup_key(Command& app, Action& action);
 void setup_help(Command& app, Action& action);
 void setup_completion(Command& app, Action& action);
 
+/// --node and --axes, of files with surfaces.
+void add_scene_options(Command& command, std::string& node, std::string& axes);
+
 /// Whether a command is a script of lab/, which takes all that follows its name.
 bool is_script(std::string_view command);
 /// Name it in the help, the manual and the completion.   pre  is_script(name)

@@ -52,13 +52,34 @@ tl::expected<RereadableInput, Failure> RereadableInput::open(const std::string& 
 
 // ==== traces ====
 
-tl::expected<TraceReader, Failure> open_trace(const std::string& path, const std::string& shown, const ReadOptions& options) {
-  auto reader = TraceReader::open(path, options);
-  if (reader) return std::move(*reader);
-  Diagnostic error = reader.error();
-  if (error.detail.empty()) return refuse(shown, error.error);
-  error.file = shown;
-  return refuse(error);
+namespace {
+
+/// All of a foreign recording is looked at before its first frame, which takes as long as reading it.
+class LookAhead final : public ReadWatcher {
+ public:
+  explicit LookAhead(Visibility visibility) : visibility_(visibility) {}
+  void on_read(std::uint64_t bytes, std::uint64_t all) override {
+    if (!progress_) progress_.emplace("look ahead", all, visibility_);
+    progress_->update(bytes);
+  }
+
+ private:
+  Visibility visibility_;
+  std::optional<Progress> progress_;
+};
+
+}  // namespace
+
+tl::expected<TraceReader, Failure> open_trace(const std::string& path, const std::string& shown, Visibility progress,
+                                              const ReadOptions& options) {
+  ReadOptions watched = options;
+  LookAhead look(progress);
+  watched.watcher = &look;
+  return TraceReader::open(path, watched).map_error([&](const Diagnostic& error) { return refuse(shown, error).value(); });
+}
+
+tl::expected<bool, Failure> next_frame(TraceReader& reader, TraceFrame& frame, const std::string& path) {
+  return reader.next(frame).map_error([&](const Error& error) { return refuse(path, reader.explain(error)).value(); });
 }
 
 void warn_cut_stream(const std::string& path, const Error& error) {
@@ -67,11 +88,8 @@ void warn_cut_stream(const std::string& path, const Error& error) {
 }
 
 Outcome check_ending(const std::string& path, const TraceReader& reader, std::uint64_t frames) {
-  if (!reader.notes().empty()) {
-    std::fflush(stdout);
-    Report unused;
-    tell(reader.notes(), path, unused);
-  }
+  if (!reader.notes().empty()) std::fflush(stdout);
+  print_notes(reader.notes(), path);
   if (!reader.cut_short()) return {};
   if (frames == 0) {
     return refuse(shown_path(path) + ": the trace was cut before the end of its first chunk; no tick of it can be read",
@@ -87,7 +105,7 @@ Outcome check_ending(const std::string& path, const TraceReader& reader, std::ui
 
 namespace {
 
-constexpr std::string_view kTraceMagic = "\x89MCAP";
+constexpr std::string_view kStreamMagic = "\x89TCT";
 
 }  // namespace
 
@@ -109,14 +127,14 @@ Outcome check_plausible_length(const std::string& path, std::span<const std::uin
 
 bool is_cut_stream(const Error& error) { return error.rule == std::string_view("R-FIL-2"); }
 
-tl::expected<MotionSource, Failure> MotionSource::open(const std::string& path) {
+tl::expected<MotionSource, Failure> MotionSource::open(const std::string& path, Visibility progress) {
   MotionSource source(path);
   TACTUS_TRY(auto input, RereadableInput::open(path));
   source.input_ = std::make_unique<RereadableInput>(std::move(input));
-  std::string magic(kTraceMagic.size(), '\0');
+  std::string magic(kStreamMagic.size(), '\0');
   std::ifstream(source.input_->path(), std::ios::binary).read(magic.data(), static_cast<std::streamsize>(magic.size()));
-  if (magic == kTraceMagic) {
-    auto trace = open_trace(source.input_->path(), path);
+  if (magic != kStreamMagic) {  // what is neither is named there
+    auto trace = open_trace(source.input_->path(), path, progress);
     if (!trace) return tl::unexpected(trace.error());
     source.trace_.emplace(std::move(*trace));
     return source;
@@ -134,11 +152,10 @@ tl::expected<MotionSource, Failure> MotionSource::open(const std::string& path) 
 
 tl::expected<bool, Failure> MotionSource::next(TraceFrame& frame) {
   if (player_) return next_of_stream(frame);
-  const auto more = trace_->next(frame);
-  if (!more) return refuse(path_, more.error());
-  if (*more) ++frames_;
+  TACTUS_TRY(const bool more, next_frame(*trace_, frame, path_));
+  if (more) ++frames_;
   else TACTUS_CHECK(check_ending(path_, *trace_, frames_));
-  return *more;
+  return more;
 }
 
 tl::expected<bool, Failure> MotionSource::next_of_stream(TraceFrame& frame) {

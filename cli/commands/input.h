@@ -13,6 +13,7 @@
 #include <tactus/player.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/output.h"
+#include "cli/progress.h"
 #include "cli/report/messages.h"
 
 namespace tactus::cli {
@@ -39,9 +40,15 @@ class RereadableInput {
 // How a trace is opened, and what is to be said when it was read to its end: notes of its reader, and that its writer did not finish.
 
 /// Open a trace, or a recording of another program.   in  shown  name for messages
-/// err  as TraceReader::open(), with topic and time
-tl::expected<TraceReader, Failure> open_trace(const std::string& path, const std::string& shown, const ReadOptions& options = {});
-inline tl::expected<TraceReader, Failure> open_trace(const std::string& path) { return open_trace(path, path); }
+/// err  as TraceReader::open()
+tl::expected<TraceReader, Failure> open_trace(const std::string& path, const std::string& shown, Visibility progress,
+                                              const ReadOptions& options = {});
+inline tl::expected<TraceReader, Failure> open_trace(const std::string& path, Visibility progress) {
+  return open_trace(path, path, progress);
+}
+
+/// Read the next frame, as TraceReader::next().   err  the same, with chunk, topic and time
+tl::expected<bool, Failure> next_frame(TraceReader& reader, TraceFrame& frame, const std::string& path);
 
 /// A stream ends inside a record: warns on standard error, quiet or not.
 void warn_cut_stream(const std::string& path, const Error& error);
@@ -72,7 +79,7 @@ struct SourcePacket {
 class MotionSource {
  public:
   /// path "-" is standard input.   err  as TraceReader and Player; the stream is implausibly long
-  static tl::expected<MotionSource, Failure> open(const std::string& path);
+  static tl::expected<MotionSource, Failure> open(const std::string& path, Visibility progress);
 
   const TraceInfo& info() const noexcept { return trace_ ? trace_->info() : info_; }
   bool is_stream() const noexcept { return player_.has_value(); }

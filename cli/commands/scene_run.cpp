@@ -15,8 +15,8 @@ namespace tactus::cli {
 
 // ==== replay ====
 
-tl::expected<TraceReader, Failure> open_replay(const std::string& path) {
-  auto reader = open_trace(path);
+tl::expected<TraceReader, Failure> open_replay(const std::string& path, Visibility progress) {
+  auto reader = open_trace(path, progress);
   if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& info = reader->info();
   if (info.users.empty()) return refuse(shown_path(path) + ": nobody is in this trace", "Give a trace with a user.");

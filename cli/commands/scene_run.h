@@ -13,6 +13,7 @@
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/simulation.h>
 #include <tactus/trace/trace_file.h>
+#include "cli/progress.h"
 #include "cli/report/messages.h"
 
 namespace tactus::cli {
@@ -21,7 +22,7 @@ namespace tactus::cli {
 // A recording whose devices are played again.
 
 /// A trace with users, a sample of each for every tick of a simulation.
-tl::expected<TraceReader, Failure> open_replay(const std::string& path);
+tl::expected<TraceReader, Failure> open_replay(const std::string& path, Visibility progress);
 
 /// One sample per user. If the recording has no buttons, button 0 counts as pressed during a spring contact.
 std::vector<DeviceSample> recorded_devices(const TraceReader& recording, const TraceFrame& frame);

@@ -74,9 +74,14 @@ void ContactArguments::add_to(Command& command) {
       });
 }
 
+std::vector<DeclaredContact> ContactArguments::declared() const {
+  std::vector<DeclaredContact> out;
+  for (const std::string& typed : typed_) out.push_back(parse(typed).value());  // it was checked
+  return out;
+}
+
 tl::expected<ContactDeclarations, Failure> ContactArguments::of(const TraceInfo& info, const std::string& file) const {
-  std::vector<DeclaredContact> declared;
-  for (const std::string& typed : typed_) declared.push_back(parse(typed).value());  // it was checked
+  const std::vector<DeclaredContact> declared = this->declared();
   for (const DeclaredContact& of : declared) {
     if (std::ranges::find(info.users, of.user, &TraceUser::name) == info.users.end())
       return refuse(fmt::format("{}: --contact: there is no user \"{}\"", shown_path(file), shown(of.user)),

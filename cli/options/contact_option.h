@@ -15,6 +15,7 @@ namespace tactus::cli {
 class ContactArguments {
  public:
   void add_to(Command& command);
+  std::vector<DeclaredContact> declared() const;
   /// err  there is no such user or object in the trace
   tl::expected<ContactDeclarations, Failure> of(const TraceInfo& info, const std::string& file) const;
 

@@ -120,6 +120,42 @@ constexpr std::array kOptions{
     Row{"--force", kOutput},
 };
 
+// Of `import`, where some options mean what no other command means by them.
+constexpr std::string_view kColumns = "Columns", kMeaning = "Units, order and axes", kTimes = "Times and missing samples",
+                           kText = "Text";
+
+constexpr std::array kImportOptions{
+    Row{"--preset", kColumns},
+    Row{"--list-presets", kColumns},
+    Row{"--map", kColumns},
+    Row{"--time", kColumns},
+    Row{"--segment", kColumns},
+    Row{"--object-column", kColumns},
+    Row{"--object", kColumns},
+    Row{"--user", kColumns},
+    Row{"--length-unit", kMeaning},
+    Row{"--time-unit", kMeaning},
+    Row{"--angle-unit", kMeaning},
+    Row{"--force-unit", kMeaning},
+    Row{"--quaternion-order", kMeaning},
+    Row{"--euler-order", kMeaning},
+    Row{"--date-order", kMeaning},
+    Row{"--axes", kMeaning},
+    Row{"--angular-velocity-frame", kMeaning},
+    Row{"--tick-rate", kTimes},
+    Row{"--rate", kTimes},
+    Row{"--stamps", kTimes},
+    Row{"--gap", kTimes},
+    Row{"--no-resample", kTimes},
+    Row{"--restarts", kTimes},
+    Row{"--strict", kTimes},
+    Row{"--skip-lines", kText},
+    Row{"--names", kText},
+    Row{"--missing", kText},
+    Row{"--keep-last", kText},
+    Row{"--skip-bad", kText},
+};
+
 constexpr std::string_view kCodec = "Codec", kScenes = "Scenes", kTraces = "Traces", kLive = "Devices and sessions",
                            kStudies = "Studies", kHelp = "Help";
 
@@ -141,7 +177,10 @@ std::string find(const std::array<Row, N>& rows, std::string_view name, std::str
 
 }  // namespace
 
-std::string heading_of(std::string_view option) { return find(kOptions, option, "Options"); }
+std::string heading_of(std::string_view option, std::string_view group) {
+  const std::string heading = find(kOptions, option, "Options");
+  return group == "import" ? find(kImportOptions, option, heading) : heading;
+}
 std::string heading_of_command(std::string_view command) { return find(kCommands, command, "More commands"); }
 
 }  // namespace tactus::cli

@@ -18,8 +18,9 @@ std::string did_you_mean(std::string_view typed, std::span<const std::string> na
 // ==== headings ====
 // Headings of the help: which option and which command stands under which.
 
-/// in   option  its long name: "--deadband";   out  "Options" for what only one command has
-std::string heading_of(std::string_view option);
+/// in   option  its long name: "--deadband";  group  above its command: "import", or the program;   out  "Options" for what only one
+///      command has
+std::string heading_of(std::string_view option, std::string_view group);
 
 /// in   command  of the program, not of a group
 std::string heading_of_command(std::string_view command);

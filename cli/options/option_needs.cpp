@@ -90,6 +90,10 @@ constexpr std::array kNeeds{
     Need{"--quality", Subject::surface},
     Need{"--split-surface", Subject::surface},
     Need{"--time-limit", Subject::surface},
+    Need{"--axes", Subject::surface},
+    Need{"--node", Subject::gltf},
+    Need{"--animation", Subject::gltf},
+    Need{"--series", Subject::frames},
 };
 
 const char* lack_of(Subject subject) {
@@ -110,6 +114,10 @@ const char* lack_of(Subject subject) {
       return "no packets";
     case Subject::surface:
       return "no surface to fill";
+    case Subject::gltf:
+      return "no glTF scene";
+    case Subject::frames:
+      return "no folder of frames";
   }
   return "";
 }

@@ -12,7 +12,7 @@ namespace tactus::cli {
 class Command;
 
 /// What an option applies to; messages for a missing subject are in option_needs.cpp.
-enum class Subject { rigid, user, mesh, touched_mesh, deformable, deformed, packets, surface };
+enum class Subject { rigid, user, mesh, touched_mesh, deformable, deformed, packets, surface, gltf, frames };
 
 /// What a trace holds.
 std::set<Subject> subjects_of(const TraceInfo& info);

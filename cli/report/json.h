@@ -22,13 +22,11 @@ inline void to_json(Json& out, const Value& value) { out = value.json; }
 /// As printed: indented, and text that is no UTF-8 made so.
 std::string text_of_json(const Json& json);
 
-/// A schema of cli/schemas.
+/// A schema of cli/schemas, with what it refers to in its place.
 const Json& schema(const std::string& name);
-/// What a schema says of a property, references followed.
-Json resolved(const Json& property, const Json& root);
 /// A table as a person sees it.
 void print_table(const Json& value, const Json& schema, std::FILE* out);
 /// A value as it stands in a table whose head says its unit.   in  property  what the schema says of it
-std::string cell_of(const Json& value, const Json& property, const Json& root);
+std::string cell_of(const Json& value, const Json& property);
 
 }  // namespace tactus::cli

@@ -44,6 +44,16 @@ tl::unexpected<Failure> refuse(const Diagnostic& error) {
   return refuse_told(to_string(error), error.file, place_of(error), error.error);
 }
 
+tl::unexpected<Failure> refuse(const std::string& file, const Diagnostic& error) {
+  const std::string place = place_of(error);
+  auto refused = refuse(file, place, error.error);
+  if (!error.cause.empty())
+    refused.value().text = fmt::format("{}{}{}: {} ({}, {})", shown_path(file), place.empty() ? "" : ", ", place, error.cause,
+                                       errc_name(error.error.code), error.error.rule);
+  if (!error.remedy.empty()) refused.value().remedy = error.remedy;
+  return refused;
+}
+
 tl::unexpected<Failure> refuse(const std::string& file, const Error& error) {
   return refuse(file, place_of_bit(error.bit_offset), error);
 }

@@ -34,7 +34,9 @@ inline std::string place_of_tick(std::int64_t tick) { return "tick " + std::to_s
 tl::unexpected<Failure> refuse(const std::string& file, const std::string& place, const Error& error);
 /// The same with the place that the error itself carries.
 tl::unexpected<Failure> refuse(const std::string& file, const Error& error);
-/// An error with its place: one line, the remedy included.
+/// An error of a recording, with all that its reader knows of place, cause and remedy.
+tl::unexpected<Failure> refuse(const std::string& file, const Diagnostic& error);
+/// An error of a text or a simulation with its place: one line, the remedy included.
 tl::unexpected<Failure> refuse(const Diagnostic& error);
 /// What to do about an operation on a file that failed for this reason (errno).
 std::string remedy_of(int cause);

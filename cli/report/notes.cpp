@@ -14,12 +14,20 @@ std::string text_of(const ReadNote& note) {
   return text;
 }
 
+std::vector<std::string> texts_of(const std::vector<ReadNote>& notes) {
+  std::vector<std::string> texts;
+  texts.reserve(notes.size());
+  for (const ReadNote& note : notes) texts.push_back(text_of(note));
+  return texts;
+}
+
+void print_notes(const std::vector<ReadNote>& notes, const std::string& file) {
+  for (const ReadNote& note : notes) fmt::print(stderr, "note: {}: {}\n", shown_path(file), shown(text_of(note), 1000));
+}
+
 void tell(const std::vector<ReadNote>& notes, const std::string& file, Report& report) {
-  for (const ReadNote& note : notes) {
-    std::string text = text_of(note);
-    fmt::print(stderr, "note: {}: {}\n", shown_path(file), shown(text, 1000));
-    report.warnings.push_back(std::move(text));
-  }
+  print_notes(notes, file);
+  report.add(notes);
 }
 
 }  // namespace tactus::cli

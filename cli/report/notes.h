@@ -12,7 +12,11 @@ namespace tactus::cli {
 
 /// "/cup/pose: 12 samples missing (the first at 3.021 s)"
 std::string text_of(const ReadNote& note);
-/// "topic /cup/pose: 12 samples ...; the first at 3.021 s" for each, as a note on standard error and as a warning of the report.
+/// The same for each.
+std::vector<std::string> texts_of(const std::vector<ReadNote>& notes);
+/// "note: FILE: /cup/pose: 12 samples ..." on standard error: there people see them, once. A report has them in its JSON alone.
+void print_notes(const std::vector<ReadNote>& notes, const std::string& file);
+/// Both.
 void tell(const std::vector<ReadNote>& notes, const std::string& file, Report& report);
 
 }  // namespace tactus::cli

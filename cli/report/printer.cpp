@@ -27,11 +27,15 @@ std::string filled(std::string text, const std::string& name) {
   return text;
 }
 
-std::string text_at(const Json& schema, const char* key) { return schema.value(key, std::string()); }
+const std::string& text_at(const Json& schema, const char* key) {
+  static const std::string none;
+  const auto found = schema.find(key);
+  return found == schema.end() ? none : found->get_ref<const std::string&>();
+}
 
 /// The unit after a number, " mm", or nothing.
 std::string unit_of(const Json& schema) {
-  const std::string unit = text_at(schema, "x-unit"), format = text_at(schema, "x-format");
+  const std::string &unit = text_at(schema, "x-unit"), &format = text_at(schema, "x-format");
   const bool is_told = unit == "none" || unit == "of the row" || format == "percent" || format == "duration";
   return is_told ? "" : unit;
 }
@@ -42,9 +46,10 @@ std::string labelled(const std::string& title, const Json& schema) {
 }
 
 std::string number_text(const Json& value, const Json& schema) {
-  const std::string format = text_at(schema, "x-format");
+  const std::string& format = text_at(schema, "x-format");
   const double scale = schema.value("x-scale", 1.0);
-  if (format.empty() && scale == 1 && value.is_number_integer()) return value.dump();
+  if (format.empty() && scale == 1 && value.is_number_unsigned()) return std::to_string(value.get<std::uint64_t>());
+  if (format.empty() && scale == 1 && value.is_number_integer()) return std::to_string(value.get<std::int64_t>());
   const double scaled = scale * value.get<double>();
   if (format == "percent") return percent(scaled);
   if (format == "duration") return duration(scaled);
@@ -54,40 +59,41 @@ std::string number_text(const Json& value, const Json& schema) {
 
 enum class With { nothing, unit };  // after a number: its unit or noun
 
-std::string text_of(const Json& value, const Json& schema, const Json& root, With with);
+std::string text_of(const Json& value, const Json& schema, With with);
 
 /// Elements of arrays, members of objects.
-std::string joined(const Json& value, const Json& schema, const Json& root, With with) {
+std::string joined(const Json& value, const Json& schema, With with) {
   std::string text;
   const auto add = [&](const char* between, const Json& part, const Json& of_part, With with_part) {
     if (of_part.value("x-hidden", false) || (of_part.contains("x-omit") && of_part["x-omit"] == part)) return;
-    const std::string more = text_of(part, of_part, root, with_part);
+    const std::string more = text_of(part, of_part, with_part);
     text += (text.empty() || more.starts_with(' ') ? "" : between) + more;
   };
   if (value.is_object())
     for (const auto& [key, property] : schema["properties"].items())
-      if (value.contains(key)) add(with == With::unit ? ", " : ":", value[key], resolved(property, root), with);
+      if (value.contains(key)) add(with == With::unit ? ", " : ":", value[key], property, with);
   if (value.is_array())
     for (const Json& part : value)  // the unit of numbers is that of the array
       add(part.is_string()  ? ", "
           : part.is_array() ? "; "
                             : " ",
-          part, part.is_number() ? schema : resolved(schema["items"], root), With::nothing);
+          part, part.is_number() ? schema : schema["items"], With::nothing);
   return text;
 }
 
-std::string text_of(const Json& value, const Json& schema, const Json& root, With with) {
+std::string text_of(const Json& value, const Json& schema, With with) {
   std::string text;
   if (value.is_null()) text = "-";
   else if (value.is_boolean()) text = value.get<bool>() ? "yes" : "no";
   else if (value.is_string()) text = value.get<std::string>();
   else if (value.is_number()) text = number_text(value, schema);
-  else text = joined(value, schema, root, text_at(schema, "x-as") == "cell" ? With::unit : with);
-  const std::string plain = value.is_boolean() ? value.dump() : text;
-  if (const auto words = schema.find("x-words"); words != schema.end() && words->contains(plain)) return (*words)[plain];
+  else text = joined(value, schema, text_at(schema, "x-as") == "cell" ? With::unit : with);
+  if (const auto words = schema.find("x-words"); words != schema.end())
+    if (const auto word = words->find(!value.is_boolean() ? text : value.get<bool>() ? "true" : "false"); word != words->end())
+      return *word;
   if (with == With::unit && value.is_number() && schema.contains("x-count"))
     text = counted(value.get<std::uint64_t>(), text_at(schema, "x-count").c_str());
-  else if (const std::string unit = unit_of(schema); with == With::unit && !unit.empty() && !value.is_null()) text += " " + unit;
+  else if (with == With::unit && !value.is_null() && !unit_of(schema).empty()) text += " " + unit_of(schema);
   return schema.contains("x-text") ? filled(schema["x-text"], text) : text;
 }
 
@@ -127,12 +133,12 @@ struct Place {
   std::optional<std::string> row{}, column{};
   std::string row_label{}, prefix{};  // prefix: of columns
   bool joins = false;                 // rows that are there, with its column before theirs
-  Json row_schema{};
+  const Json* row_schema = nullptr;
 };
 
 class Layout {
  public:
-  Layout(const Json& value, const Json& schema) : root_(schema) { object(value, schema, {.block = text_at(schema, "x-block")}); }
+  Layout(const Json& value, const Json& schema) { object(value, schema, {.block = text_at(schema, "x-block")}); }
   void object(const Json& value, const Json& schema, const Place& place);
   void print(std::FILE* out) const;
 
@@ -149,27 +155,27 @@ class Layout {
   /// Calls look(member, its schema) in the order of the schema.
   template <class Look>
   void for_each_member(const Json& value, const Json& schema, Look look) {
-    static const Json kNone = Json::object();
-    const Json& known = schema.contains("properties") ? schema["properties"] : kNone;
+    static const Json none = Json::object();
+    const Json& known = schema.contains("properties") ? schema["properties"] : none;
     for (const auto& [key, property] : known.items())
-      if (value.contains(key)) look(value[key], resolved(property, root_));
+      if (value.contains(key)) look(value[key], property);
     for (const auto& [key, part] : value.items()) {
       if (known.contains(key) || !schema.contains("additionalProperties") || !schema["additionalProperties"].is_object())
         continue;
-      Json property = resolved(schema["additionalProperties"], root_);
+      Json property = schema["additionalProperties"];
       property["title"] = key;
       look(part, property);
     }
   }
 
-  const Json& root_;
   std::vector<Block> blocks_;
   std::vector<std::string> sentences_, notes_;
 };
 
 /// Of several possible, the schema whose constants are those of the value.
-Json chosen(const Json& value, const Json& schema) {
-  for (const Json& one : schema.value("oneOf", Json::array())) {
+const Json& chosen(const Json& value, const Json& schema) {
+  if (!schema.contains("oneOf")) return schema;
+  for (const Json& one : schema["oneOf"]) {
     const auto differs = [&](const auto& item) {
       return item.value().contains("const") && item.value()["const"] != value.value(item.key(), Json());
     };
@@ -184,7 +190,8 @@ void Layout::object(const Json& value, const Json& schema, const Place& place) {
 }
 
 void Layout::member(const Json& value, const Json& schema, const Place& place) {
-  const std::string as = text_at(schema, "x-as"), title = filled(text_at(schema, "title"), place.name);
+  const std::string& as = text_at(schema, "x-as");
+  const std::string title = filled(text_at(schema, "title"), place.name);
   if (schema.value("x-hidden", false) || as == "name" || (schema.contains("x-omit") && schema["x-omit"] == value)) return;
   if (const std::string note = text_at(schema, "x-note"); !note.empty() && std::ranges::find(notes_, note) == notes_.end())
     notes_.push_back(note);
@@ -192,15 +199,14 @@ void Layout::member(const Json& value, const Json& schema, const Place& place) {
   Place inner = place;
   if (schema.contains("x-block")) inner.block = filled(schema["x-block"], place.name);
   const bool is_cell = as == "cell" || !value.is_structured();
-  if (is_cell || (value.is_array() && !resolved(schema["items"], root_).contains("properties")))
-    return leaf(value, schema, inner, title);
+  if (is_cell || (value.is_array() && !schema["items"].contains("properties"))) return leaf(value, schema, inner, title);
   const bool has_block = !title.empty() && !schema.contains("x-block") && as != "row" && as != "column" && as != "joins" &&
                          as != "columns" && !place.row;
   if (has_block && value.is_object()) inner.block = title;
   if (as == "row") {
     inner.row = title;
     inner.row_label = labelled(title, schema);
-    inner.row_schema = schema;
+    inner.row_schema = &schema;
   } else if (as == "column" || as == "joins") {
     inner.column = title;
     inner.joins = as == "joins";
@@ -214,7 +220,7 @@ void Layout::member(const Json& value, const Json& schema, const Place& place) {
 
 void Layout::texts(const Json& value, const Json& schema, Block& to, const std::string& title) {
   const std::string as = schema["x-as"];
-  if (as == "heading") to.title = text_of(value, schema, root_, With::unit);
+  if (as == "heading") to.title = text_of(value, schema, With::unit);
   if (as == "sentence")
     for (const Json& text : value.is_array() ? value : Json::array({value})) sentences_.push_back(text);
   if (as == "lines")
@@ -230,13 +236,13 @@ void Layout::rows(const Json& value, const Json& schema, const Place& place) {
 }
 
 void Layout::elements(const Json& value, const Json& schema, const Place& place) {
-  const Json items = resolved(schema["items"], root_);
-  const std::string as = text_at(schema, "x-as"), title = text_at(schema, "title");
+  const Json& items = schema["items"];
+  const std::string &as = text_at(schema, "x-as"), &title = text_at(schema, "title");
   std::size_t number = 0;
   for (const Json& element : value) {
     std::string name;
     for_each_member(element, items, [&](const Json& part, const Json& property) {
-      if (text_at(property, "x-as") == "name") name += (name.empty() ? "" : ", ") + text_of(part, property, root_, With::unit);
+      if (text_at(property, "x-as") == "name") name += (name.empty() ? "" : ", ") + text_of(part, property, With::unit);
     });
     Place at = place;
     if (as == "columns") {
@@ -248,36 +254,38 @@ void Layout::elements(const Json& value, const Json& schema, const Place& place)
       if (!title.empty() && !schema.contains("x-block")) at.block = filled(title, place.name);
       at.row = fmt::format("{}/{}", place.row.value_or(""), number++);
       at.row_label = name;
-      at.row_schema = schema;
+      at.row_schema = &schema;
     }
     object(element, items, at);
   }
 }
 
-/// With the unit that its row has.
-Json in_unit_of_row(Json schema, const Json& row) {
-  if (text_at(schema, "x-unit") == "of the row" && row.contains("x-scale")) schema["x-scale"] = row["x-scale"];
-  return schema;
+/// As a cell, with the unit that its row has.
+std::string plain_text(const Json& value, const Json& schema, const Json* row) {
+  if (!row || !row->contains("x-scale") || text_at(schema, "x-unit") != "of the row")
+    return text_of(value, schema, With::nothing);
+  Json of_row = schema;
+  of_row["x-scale"] = (*row)["x-scale"];
+  return text_of(value, of_row, With::nothing);
 }
 
 void Layout::leaf(const Json& value, const Json& schema, const Place& place, const std::string& title) {
   if (place.joins) {
     const auto found = std::ranges::find(blocks_, place.block, &Block::key);
-    if (found != blocks_.end() && found->has_row(title))
-      found->join(title, *place.column, text_of(value, schema, root_, With::unit));
+    if (found != blocks_.end() && found->has_row(title)) found->join(title, *place.column, text_of(value, schema, With::unit));
     return;
   }
-  const std::string own = text_at(schema, "x-row"), column = text_at(schema, "x-column");
+  const std::string &own = text_at(schema, "x-row"), &column = text_at(schema, "x-column");
   const std::string row = own.empty() ? title : filled(own, place.name);
-  const auto plain = [&] { return text_of(value, in_unit_of_row(schema, place.row_schema), root_, With::nothing); };
+  const auto plain = [&] { return plain_text(value, schema, place.row_schema); };
   Block& to = block(place.block);
   if (place.row && place.column) return to.add(*place.row, place.row_label, *place.column, plain());
   if (place.row && schema.contains("x-column"))
-    return to.add(*place.row, place.row_label, column, column.empty() ? text_of(value, schema, root_, With::unit) : plain());
+    return to.add(*place.row, place.row_label, column, column.empty() ? text_of(value, schema, With::unit) : plain());
   if (place.row) return to.add(*place.row, place.row_label, place.prefix + labelled(title, schema), plain());
   if (place.column) return to.add(row, labelled(row, schema), *place.column, plain());
   const bool is_count = !column.empty() && schema.contains("x-count");
-  to.add(row, row, column, is_count ? plain() : text_of(value, schema, root_, With::unit));
+  to.add(row, row, column, is_count ? plain() : text_of(value, schema, With::unit));
 }
 
 /// Long texts go on below, between words.
@@ -347,33 +355,39 @@ void Layout::print(std::FILE* out) const {
       fmt::print(out, "\n{}\n", fmt::join(lines_of(shown(sentence, kLongest)), "\n"));
 }
 
+/// With what is referred to in its place, and what stands beside a reference before that.   in  root  where "#" is
+Json resolved(const Json& node, const Json& root) {
+  if (!node.is_structured()) return node;
+  const auto ref = node.find("$ref");
+  Json out = node.is_array() ? Json::array() : Json::object();
+  if (ref != node.end()) {
+    const std::string path = *ref;
+    const Json& from = path.starts_with('#') ? root : schema("parts");
+    out = resolved(from["$defs"][path.substr(path.rfind('/') + 1)], root);
+  }
+  for (const auto& [key, value] : node.items()) {
+    if (node.is_array()) out.push_back(resolved(value, root));
+    else if (key != "$ref") out[key] = resolved(value, root);
+  }
+  return out;
+}
+
 }  // namespace
 
 const Json& schema(const std::string& name) {
-  static std::map<std::string, Json> parsed;
-  const auto [place, is_new] = parsed.try_emplace(name);
-  if (is_new)
+  static std::map<std::string, Json> read;
+  const auto [place, is_new] = read.try_emplace(name);
+  if (is_new) {
     place->second =
         Json::parse(std::ranges::find(kSchemas, std::string_view(name), &std::pair<const char*, const char*>::first)->second);
+    place->second = resolved(place->second, place->second);
+  }
   return place->second;
-}
-
-Json resolved(const Json& property, const Json& root) {
-  const auto ref = property.find("$ref");
-  if (ref == property.end()) return property;
-  const std::string path = *ref;
-  const Json& from = path.starts_with('#') ? root : schema("parts");
-  Json out = resolved(from["$defs"][path.substr(path.rfind('/') + 1)], root);
-  for (const auto& [key, value] : property.items())
-    if (key != "$ref") out[key] = value;
-  return out;
 }
 
 void print_table(const Json& value, const Json& schema, std::FILE* out) { Layout(value, schema).print(out); }
 
-std::string cell_of(const Json& value, const Json& property, const Json& root) {
-  return text_of(value, property, root, With::nothing);
-}
+std::string cell_of(const Json& value, const Json& property) { return text_of(value, property, With::nothing); }
 
 std::string text_of_json(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
 

@@ -25,7 +25,7 @@ namespace tactus::cli {
 struct CommonOptions;
 struct Value;
 
-/// Print as the options say: JSON, a table, or nothing when quiet.   in  schema  "report": of cli/schemas
-void print(const Value& value, const char* schema, const CommonOptions& options, std::FILE* out = stdout);
+/// Print as the options say: JSON, a table, or nothing when quiet.   in  name  "report": of cli/schemas
+void print(const Value& value, const char* name, const CommonOptions& options, std::FILE* out = stdout);
 
 }  // namespace tactus::cli

@@ -11,6 +11,7 @@
 
 #include <tactus/base/shown.h>
 #include "cli/report/json.h"
+#include "cli/report/notes.h"
 #include "cli/report/table.h"
 
 namespace tactus::cli {
@@ -182,6 +183,7 @@ void add_particulars(Json& out, const Report& r) {
                               {"lowest_energy_J", t.lowest_energy}});
   }
   for (const std::string& warning : r.warnings) out["warnings"].push_back(warning);
+  if (!r.notes.empty()) out["notes"] = r.notes;
 }
 
 void add_verdict(Json& out, const Report& r) {
@@ -243,11 +245,14 @@ std::string broken_bounds(const Report& r) {
 
 std::string missing_force_bound(const Report& r) {
   if (!r.fidelity || r.fidelity->bounds().haptic == HapticRule::off) return {};
-  std::vector<std::string> users = r.fidelity->unbound_users();
+  return missing_force_bound(r.fidelity->unbound_users());
+}
+
+std::string missing_force_bound(std::vector<std::string> users, const std::string& declare) {
   if (users.empty()) return {};
   for (std::string& user : users) user = shown(user);
-  return fmt::format("No force bound: the recording has forces of user {} and no contacts; declare them with --contact.",
-                     fmt::join(users, ", "));
+  return fmt::format("No force bound: the recording has forces of user {} and no contacts; declare them with {}.",
+                     fmt::join(users, ", "), declare);
 }
 
 Outcome verdict(const Report& r, const std::string& file) {
@@ -280,6 +285,10 @@ void Report::describe(const TraceInfo& info) {
   users = info.users.size();
   moving = static_cast<std::uint64_t>(
       std::count_if(info.objects.begin(), info.objects.end(), [](const TraceObject& o) { return o.dof != Dof::none; }));
+}
+
+void Report::add(const std::vector<ReadNote>& read) {
+  for (std::string& text : texts_of(read)) notes.push_back(std::move(text));
 }
 
 void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const TriggerArguments& triggers, Report& report) {

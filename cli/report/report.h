@@ -16,6 +16,7 @@
 #include <tactus/metrics/rates.h>
 #include <tactus/session/session_client.h>
 #include <tactus/session/session_options.h>
+#include <tactus/trace/read_notes.h>
 #include "cli/options/options_codec.h"
 #include "cli/report/printer.h"
 #include "cli/report/table.h"
@@ -84,9 +85,6 @@ struct MeshReport {
 inline double bytes_of(const DeformableRates& t, std::uint64_t header) {
   return static_cast<double>(t.bytes + t.sizes.size() * header);
 }
-/// Every frame as three floats per vertex.
-inline double raw_bytes(const MeshReport& mesh) { return 12.0 * static_cast<double>(mesh.vertices * mesh.traffic->frames); }
-inline bool has_layers(const DeformableRates& t) { return t.layers[0].packets + t.layers[1].packets > 0; }
 
 // ==== traffic layers ====
 // What an end of a session sends, layer by layer.
@@ -185,7 +183,8 @@ struct Report {
   std::vector<DeformableReport> deformables{};
   std::vector<TouchReport> touches{};  ///< one per user
   std::vector<std::string> warnings{};
-  std::string bounds_from{};  ///< "stream", "options", "defaults"; empty: no verdict on them
+  std::vector<std::string> notes{};  ///< of readers, which were printed as they came
+  std::string bounds_from{};         ///< "stream", "options", "defaults"; empty: no verdict on them
   std::optional<StreamSize> stream{};
   std::optional<RateMetrics> traffic{};
   std::optional<LoadRates> loads{};
@@ -196,6 +195,7 @@ struct Report {
 
   /// Take over what a trace's description says.
   void describe(const TraceInfo& info);
+  void add(const std::vector<ReadNote>& read);
   /// From the first tick to the last, with those that a recording leaves out: what rates are per.
   double seconds() const { return tick_rate == 0 ? 0 : static_cast<double>(ticks.length()) / tick_rate; }
   /// Payload of all parts of the stream, and how many packets it came in.
@@ -209,6 +209,8 @@ void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const Trigge
 std::string broken_bounds(const Report& report);
 /// Of users who feel forces without any contact; empty: there are none.   "No force bound: the recording has forces of user hand ..."
 std::string missing_force_bound(const Report& report);
+/// in  declare  the option that declares contacts
+std::string missing_force_bound(std::vector<std::string> users, const std::string& declare = "--contact");
 /// A failure that says so.   in  file  that was judged
 Outcome verdict(const Report& report, const std::string& file);
 

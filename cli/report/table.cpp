@@ -40,6 +40,7 @@ void Columns::look(const std::vector<std::string>& cells, bool heading) {
 std::string Columns::aligned(const std::vector<std::string>& cells) const {
   std::string text;
   for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (columns_[i].width == 0) continue;
     const std::string pad(columns_[i].width - display_width(cells[i]), ' ');
     text += (i == 0 ? "" : "  ") + (i == 0 || columns_[i].is_text ? cells[i] + pad : pad + cells[i]);
   }

@@ -48,7 +48,7 @@ inline double per(double amount, double base) { return base > 0 ? amount / base 
 
 // ==== table ====
 
-/// Columns of a table: words to the left, figures to the right. For tables too long to be kept: look at all lines, then make them
+/// Columns of a table: words to the left, figures to the right; none where all cells are empty. For tables too long to be kept: look at all lines, then make them
 /// again and print each as aligned() has it.
 class Columns {
  public:

@@ -13,8 +13,10 @@ constexpr std::size_t kMostOfDetail = 160;  // a place in our words and pieces o
 constexpr std::size_t kMostOfRemedy = 400;  // it may repeat what is in the file
 
 /// From the large to the small, without the line; some are empty.
-std::array<std::string, 3> parts_of(const Diagnostic& d) {
-  return {d.step < 0 ? "" : "step " + std::to_string(d.step), d.kind == nullptr ? "" : d.kind + (' ' + std::to_string(d.element)),
+std::array<std::string, 4> parts_of(const Diagnostic& d) {
+  const std::uint64_t bit = d.error.bit_offset;
+  return {bit == 0 ? "" : "byte " + std::to_string(bit / 8) + (bit % 8 == 0 ? "" : ", bit " + std::to_string(bit % 8)),
+          d.step < 0 ? "" : "step " + std::to_string(d.step), d.kind == nullptr ? "" : d.kind + (' ' + std::to_string(d.element)),
           shown(d.detail, kMostOfDetail)};
 }
 
@@ -41,7 +43,8 @@ std::string to_string(const Diagnostic& diagnostic) {
   std::string out = file.empty() ? "" : file + ": ";
   for (const std::string& part : parts_of(diagnostic))
     if (!part.empty()) out += part + ": ";
-  out += diagnostic.error.rule + std::string(": ") + describe(diagnostic.error);
+  out += diagnostic.error.rule + std::string(": ") +
+         (diagnostic.cause.empty() ? describe(diagnostic.error) : shown(diagnostic.cause, kMostOfRemedy));
   const std::string mend = as_clause(diagnostic.remedy.empty() ? remedy(diagnostic.error) : diagnostic.remedy);
   return mend.empty() ? out : out + "; " + mend;
 }

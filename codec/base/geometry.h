@@ -2,6 +2,7 @@
 /// Vectors, rotations and poses in SI units, and what a haptic device reports in them.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -25,7 +26,9 @@ constexpr Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 inline double norm(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
-inline bool is_finite(const Vec3& a) noexcept { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+/// From the bits: std::isfinite() is always true where a program is compiled with -ffast-math.
+constexpr bool is_finite(double v) noexcept { return (~std::bit_cast<std::uint64_t>(v) & 0x7FF0'0000'0000'0000) != 0; }
+constexpr bool is_finite(const Vec3& a) noexcept { return is_finite(a.x) && is_finite(a.y) && is_finite(a.z); }
 
 struct Quat {
   double w = 1, x = 0, y = 0, z = 0;
@@ -43,9 +46,7 @@ constexpr Vec3 rotate(const Quat& q, const Vec3& v) noexcept {
   const Vec3 t = 2.0 * cross(u, v);
   return v + q.w * t + cross(u, t);
 }
-inline bool is_finite(const Quat& q) noexcept {
-  return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
-}
+constexpr bool is_finite(const Quat& q) noexcept { return is_finite(q.w) && is_finite(q.x) && is_finite(q.y) && is_finite(q.z); }
 /// Angle in [0, pi] rad of the rotation that takes a to b.
 inline double angle_between(const Quat& a, const Quat& b) noexcept {
   const Quat d = b * conjugate(a);

@@ -7,6 +7,10 @@
 
 #include <tactus/base/result.h>
 
+#ifdef __FAST_MATH__
+#error "Compile the sources of Tactus without -ffast-math: both ends compute the same bits, and NaN is refused."
+#endif
+
 namespace tactus {
 
 // ==== rule ====

@@ -26,7 +26,7 @@ struct SurfaceTouch {
 
 /// h = p |f_s| / k_c [m], thesis eq. 3.12.   pre  t.weber_fraction is set
 inline double haptic_threshold(const DeformableThresholds& t, const SurfaceTouch& touch) noexcept {
-  return *t.weber_fraction * std::max(touch.force / touch.stiffness, t.depth_floor);
+  return *t.weber_fraction * (std::max)(touch.force / touch.stiffness, t.depth_floor);
 }
 
 /// A deformable object at one frame.

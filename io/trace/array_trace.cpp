@@ -8,8 +8,8 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/trace/differences.h>
-#include <tactus/trace/interpolation.h>
 #include <tactus/trace/missing.h>
+#include <tactus/trace/sample_track.h>
 #include <tactus/trace/trace_file.h>
 
 namespace tactus {
@@ -30,7 +30,8 @@ struct Lane {
   std::span<const double> values;
   std::size_t width = 0;
   std::vector<std::size_t> rows{};  // with a sample
-  std::size_t at = 0;               // of them, the last one not after the time that was asked for last
+  std::size_t taken = 0;            // of them, by the track
+  SampleTrack<std::int64_t> track{};
 };
 
 bool is_sample(const Lane& lane, std::size_t row) {
@@ -55,13 +56,13 @@ class ArrayWriter {
   void note_missing(const Lane& lane);
   void note_mended(const Lane& lane);
   Result<void> find_rate();
+  Result<void> take_contacts();
   double off_grid(double rate) const;
   double time_of(std::size_t row) const { return static_cast<double>(arrays_.time[rows_[row]] - start_) / kSecond; }
   bool is_pause(double time);
-  Vec3 vector_at(Lane& lane, double time) const;
-  Quat rotation_at(Lane& lane, double time) const;
-  double bracket(Lane& lane, double time, std::size_t& from, std::size_t& to) const;
-  void make(double time, TraceFrame& frame);
+  RigidSample sample_of(const Lane& lane, std::size_t row) const;
+  const SampleTrack<std::int64_t>& lane_at(Lane& lane, std::int64_t time) const;
+  void make(std::int64_t tick, TraceFrame& frame);
   TraceInfo info() const;
 
   const SampledArrays& arrays_;
@@ -72,6 +73,7 @@ class ArrayWriter {
   bool is_on_grid_ = false;
   std::vector<Lane> lanes_;  // of objects, then users: those that are there, in the order of the fields
   std::size_t last_row_ = 0;
+  ContactDeclarations contacts_;
 };
 
 Result<void> ArrayWriter::take_times() {
@@ -109,6 +111,7 @@ Result<void> ArrayWriter::add_lane(std::string where, std::span<const double> va
   }
   note_missing(lane);
   if (width == 4) note_mended(lane);
+  lane.track = SampleTrack<std::int64_t>({.gap = arrays_.gap * kSecond, .same = kOnGrid * kSecond / rate_});
   lanes_.push_back(std::move(lane));
   return {};
 }
@@ -219,54 +222,48 @@ bool ArrayWriter::is_pause(double time) {
   return spacing > arrays_.gap || (is_on_grid_ && spacing > 1.5 / rate_);  // an own grid's missing rows are missing ticks
 }
 
-/// Samples around a time, as rows of the array, and where it lies between them.
-double ArrayWriter::bracket(Lane& lane, double time, std::size_t& from, std::size_t& to) const {
-  while (lane.at + 1 < lane.rows.size() && time_of(lane.rows[lane.at + 1]) <= time + kOnGrid / rate_) ++lane.at;
-  from = to = rows_[lane.rows[lane.at]];
-  const double before = time_of(lane.rows[lane.at]);
-  if (lane.at + 1 == lane.rows.size() || time <= before + kOnGrid / rate_) return 0;
-  const double after = time_of(lane.rows[lane.at + 1]);
-  if (after - before > arrays_.gap) return 0;
-  to = rows_[lane.rows[lane.at + 1]];
-  return (time - before) / (after - before);
+/// A vector in the position, a rotation of unit length.
+RigidSample ArrayWriter::sample_of(const Lane& lane, std::size_t row) const {
+  const double* v = &lane.values[lane.width * rows_[row]];
+  if (lane.width == 3) return {{{v[0], v[1], v[2]}, {}}, {}, {}};
+  const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
+  const double scale = std::abs(length - 1) < 1e-12 ? 1 : length;
+  return {{{}, {v[0] / scale, v[1] / scale, v[2] / scale, v[3] / scale}}, {}, {}};
 }
 
-Vec3 ArrayWriter::vector_at(Lane& lane, double time) const {
-  std::size_t from = 0, to = 0;
-  const double share = bracket(lane, time, from, to);
-  const double *a = &lane.values[3 * from], *b = &lane.values[3 * to];
-  const auto mix = [&](std::size_t i) { return share == 0 ? a[i] : a[i] + share * (b[i] - a[i]); };
-  return {mix(0), mix(1), mix(2)};
+/// in  time  [ns] since the start, rising
+const SampleTrack<std::int64_t>& ArrayWriter::lane_at(Lane& lane, std::int64_t time) const {
+  for (; lane.taken < lane.rows.size(); ++lane.taken) {
+    const std::size_t row = lane.rows[lane.taken];
+    const std::int64_t at = arrays_.time[rows_[row]] - start_;
+    if (lane.taken > 0 && lane.track.is_settled(time, at)) break;
+    lane.track.add({at, sample_of(lane, row)});
+  }
+  lane.track.move_to(time);
+  return lane.track;
 }
 
-Quat ArrayWriter::rotation_at(Lane& lane, double time) const {
-  std::size_t from = 0, to = 0;
-  const double share = bracket(lane, time, from, to);
-  const auto unit = [&](std::size_t row) {
-    const double* q = &lane.values[4 * row];
-    const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (std::abs(length - 1) < 1e-12) return Quat{q[0], q[1], q[2], q[3]};
-    return Quat{q[0] / length, q[1] / length, q[2] / length, q[3] / length};
-  };
-  return share == 0 ? unit(from) : mixed(unit(from), unit(to), share);
-}
-
-void ArrayWriter::make(double time, TraceFrame& frame) {
+void ArrayWriter::make(std::int64_t tick, TraceFrame& frame) {
+  const auto time = static_cast<std::int64_t>(time_of_tick(tick, rate_));
   std::size_t lane = 0;
+  const auto next = [&]() -> const SampleTrack<std::int64_t>& { return lane_at(lanes_[lane++], time); };
+  const auto speed_of = [](const auto& track) { return track.is_known() ? track.value().pose.position : Vec3{}; };
   for (std::size_t i = 0; i < arrays_.objects.size(); ++i) {
     const SampledObject& of = arrays_.objects[i];
     RigidSample& out = frame.objects[i];
-    out.pose.position = vector_at(lanes_[lane++], time);
-    if (!of.rotation.empty()) out.pose.rotation = rotation_at(lanes_[lane++], time);
-    if (!of.velocity.empty()) out.velocity = vector_at(lanes_[lane++], time);
-    if (!of.angular_velocity.empty()) out.angular_velocity = vector_at(lanes_[lane++], time);
+    out.pose.position = next().value().pose.position;
+    if (!of.rotation.empty()) out.pose.rotation = next().value().pose.rotation;
+    if (!of.velocity.empty()) out.velocity = speed_of(next());
+    if (!of.angular_velocity.empty()) out.angular_velocity = speed_of(next());
   }
   for (std::size_t i = 0; i < arrays_.users.size(); ++i) {
     UserSample& out = frame.users[i];
-    if (!arrays_.users[i].device.empty()) out.device.position = vector_at(lanes_[lane++], time);
-    if (!arrays_.users[i].force.empty()) out.force = out.server_force = vector_at(lanes_[lane++], time);
+    if (!arrays_.users[i].device.empty()) out.device.position = next().value().pose.position;
+    if (!arrays_.users[i].force.empty()) out.force = out.server_force = next().vector();
+    out.contact = {};
     out.contact.device = out.device.position;
   }
+  contacts_.apply(frame);
 }
 
 TraceInfo ArrayWriter::info() const {
@@ -281,10 +278,21 @@ TraceInfo ArrayWriter::info() const {
   return out;
 }
 
+Result<void> ArrayWriter::take_contacts() {
+  auto contacts = ContactDeclarations::create(info(), arrays_.contacts);
+  if (!contacts) {
+    notes_.add("contacts", "a user or an object that there is not, a user twice, or a stiffness that is not above 0");
+    return tl::make_unexpected(contacts.error());
+  }
+  contacts_ = *std::move(contacts);
+  return {};
+}
+
 Result<TickSpan> ArrayWriter::run(const std::string& path) {
   TACTUS_CHECK(take_times());
   TACTUS_CHECK(find_rate());
   TACTUS_CHECK(take_lanes());
+  TACTUS_CHECK(take_contacts());
   TACTUS_TRY(TraceWriter writer, TraceWriter::create(path, info()));
   TraceFrame frame, before;
   frame.objects.resize(arrays_.objects.size());
@@ -298,7 +306,7 @@ Result<TickSpan> ArrayWriter::run(const std::string& path) {
       continue;
     }
     frame.tick = tick;
-    make(time, frame);
+    make(tick, frame);
     for (std::size_t i = 0; i < frame.objects.size(); ++i) {
       if (ticks.count() == 0) break;
       const double seconds = static_cast<double>(tick - before.tick) / rate_;

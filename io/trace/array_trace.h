@@ -2,8 +2,9 @@
 /// A trace from arrays: samples of objects and users at the same times, evenly spaced or not.
 ///
 /// Ticks lie on a grid of the tick rate. Rows that lie on it are taken as they are; between others positions and forces follow a straight
-/// line and rotations an arc. A sample with a value that is not finite, or a rotation of length 0, is missing: it is interpolated where
-/// its neighbours are at most `gap` apart, else the last one is held. No ticks are made between rows that are farther apart than that.
+/// line and rotations an arc. A sample with a value that is not finite, or a rotation whose length is off 1 by more than 2 %, is missing: it
+/// is interpolated where its neighbours are at most `gap` apart, else the last one is held, a force no longer than `gap` and a velocity not
+/// at all: then they are 0. No ticks are made between rows that are farther apart than that.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include <tactus/base/result.h>
+#include <tactus/trace/declared_contact.h>
 #include <tactus/trace/frame.h>
 #include <tactus/trace/read_notes.h>
 
@@ -21,7 +23,7 @@ namespace tactus {
 struct SampledObject {
   std::string name;
   std::span<const double> position{};          ///< T x 3 [m] world
-  std::span<const double> rotation{};          ///< T x 4, w x y z, of any length; empty: it does not turn
+  std::span<const double> rotation{};          ///< T x 4, w x y z; empty: it does not turn
   std::span<const double> velocity{};          ///< T x 3 [m/s]; empty: backward differences
   std::span<const double> angular_velocity{};  ///< T x 3 [rad/s] world; empty: likewise
 };
@@ -38,15 +40,17 @@ struct SampledArrays {
   std::span<const std::int64_t> time{};  ///< [ns], rising; kNoTime: missing
   std::vector<SampledObject> objects{};
   std::vector<SampledUser> users{};
-  std::uint32_t tick_rate = 0;  ///< [1/s]; 0: found from the times
-  double gap = 0.1;             ///< [s]
+  std::vector<DeclaredContact> contacts{};  ///< what users touched: is written into the trace
+  std::uint32_t tick_rate = 0;              ///< [1/s]; 0: found from the times
+  double gap = 0.1;                         ///< [s]
   std::string source = "arrays";
 };
 
 /// Write a trace. Tick 0 is the first time.
 /// out  notes  what was decided, also after an error: then the last one says where
 /// err  invalid_argument R-CSV-8 nothing to record, or an array of another length; R-CSV-7 the rate is unknown; invalid R-CSV-5 most times do
-///      not increase; malformed R-CSV-4 of an array every sample is missing; those of TraceWriter
+///      not increase; malformed R-CSV-4 of an array every sample is missing; those of ContactDeclarations
+///      and of TraceWriter
 Result<TickSpan> write_arrays(const SampledArrays& arrays, const std::string& path, ReadNotes& notes);
 
 }  // namespace tactus

@@ -3,7 +3,8 @@
 ///
 /// Numbers keep their meaning: units and axes that the names of columns tell are taken, and refused where the mapping says otherwise. A
 /// value that is missing (an empty cell, NaN, "-", a rotation of length 0) is put between its neighbours, within CsvMapping::gap. Times that
-/// lie on no grid are resampled. Whatever was decided is told in CsvImport::notes.
+/// lie on no grid are resampled, and those of rows that come in groups are spread evenly (csv_pace.h). Whatever was decided is told in
+/// CsvImport::notes.
 ///
 /// rule      class             broken when
 /// R-CSV-1   truncated         the text has no line of names and one of values, or its zstd data ends early
@@ -19,7 +20,9 @@
 ///                             body frame without rotations
 /// R-CSV-9   limit_exceeded    the zstd data unpacks to, or rows are resampled to, more than its size has earned (input_budget.h)
 /// R-CSV-10  invalid_argument  the mapping contradicts what the names of columns say of units and axes, or neither says what must be known
-/// R-CSV-11  invalid           the rate is below 10 Hz or more than half of the ticks are missing, and nobody said the unit of time or the rate
+/// R-API-5, R-API-4  as declared_contact.h: a contact
+/// R-CSV-11  invalid           the rate is below 10 Hz or above 50 kHz, or more than half of the ticks are missing, and nobody said the unit of
+///                             time or the rate
 #pragma once
 
 #include <array>
@@ -29,6 +32,7 @@
 #include <vector>
 
 #include <tactus/base/diagnostic.h>
+#include <tactus/trace/declared_contact.h>
 #include <tactus/trace/frame.h>
 #include <tactus/trace/read_notes.h>
 #include <tactus/trace/trace_file.h>
@@ -46,6 +50,8 @@ enum class AngularVelocityFrame : std::uint8_t { world, body };
 
 inline constexpr const char* kZeroColumn = "0";  ///< in a vector: a component that the table lacks and that is 0
 
+inline constexpr const char* kTickUnit = "tick";  ///< as time_unit: the column counts ticks of tick_rate
+
 enum class CsvNames : std::uint8_t {
   automatic,  ///< csv_header.h
   none,       ///< the first line holds values; columns are #1, #2, ...
@@ -59,7 +65,13 @@ struct CsvText {
 };
 
 /// In which order the four columns of a rotation are listed.
-enum class QuaternionOrder : std::uint8_t { by_names, wxyz, xyzw };  ///< by_names: as the columns are called, else w, x, y, z
+enum class QuaternionOrder : std::uint8_t {
+  by_names,  ///< as the columns are called; where they are not called after axes, as the first rotation tells: it is near none
+  wxyz,
+  xyzw,
+};
+
+enum class CsvDateOrder : std::uint8_t { by_digits, mdy, dmy };  ///< of dates such as 05/06/2024
 
 /// Which column feeds which quantity of an object or a user; an empty name means "not there". A column may also be named by its number,
 /// "#3", without its unit, or by the end of its name where that is unique. At most one kind of rotation.
@@ -73,6 +85,7 @@ struct CsvQuantities {
   std::array<std::string, 3> velocity;          ///< [m/s]; empty: backward differences, 0 where a segment begins
   std::array<std::string, 3> angular_velocity;  ///< [rad/s]; empty: likewise
   std::array<std::string, 3> device;            ///< [m] probe of the user
+  std::array<std::string, 4> device_rotation;   ///< of the probe, as rotation; needs device
   std::array<std::string, 3> force;             ///< [N] on the user; one recorded force serves for client and server
 };
 
@@ -84,26 +97,31 @@ struct CsvSubject : CsvQuantities {
 /// The whole mapping. Named ones: see csv_presets().
 struct CsvMapping : CsvQuantities {
   CsvLayout layout = CsvLayout::named_columns;
-  std::string time;     ///< a number, a date (ISO 8601) or a time of day; empty: one row per tick
+  std::string time;  ///< a number, a date with a time of day, or a time of day; empty: one row per tick. Two columns with a comma
+                     ///< between: seconds and what is to be added (its name says ns, us or ms), or a date and a time of day
+  CsvDateOrder date_order = CsvDateOrder::by_digits;
   std::string segment;  ///< rows of equal value form a segment (a toss, a trial); segments follow without a gap, the object jumps
   std::string object_column;  ///< of a long table: each of its values is an object (and a user), in its own rows
   AngularVelocityFrame angular_velocity_frame = AngularVelocityFrame::world;  ///< of angular_velocity; body needs rotation
   std::string object = "object";                                              ///< name of the object in the trace
   std::string user = "user";  ///< name of the user in the trace, if there is a device or a force
   std::vector<CsvSubject> others{};
-  double length_scale = 1.0;                            ///< metres per unit of the file's lengths
-  bool says_length = false;                             ///< length_scale was given, and must not contradict the names
-  std::string time_unit{}, angle_unit{}, force_unit{};  ///< "ms", "deg", "mN"; empty: as the names say, else s, rad and N
+  double length_scale = 1.0;  ///< metres per unit of the file's lengths
+  bool says_length = false;   ///< length_scale was given, and must not contradict the names
+  std::string time_unit{}, angle_unit{},
+      force_unit{};  ///< "ms" (or kTickUnit), "deg", "mN"; empty: as the names say, else s, rad and N
   QuaternionOrder quaternion_order = QuaternionOrder::by_names;
   std::string euler_order{};                 ///< "ZYX": about z, then the turned y, then the turned x; "xyz": about fixed axes
   std::array<std::int8_t, 3> axes{1, 2, 3};  ///< what the trace's x, y and z are in the file: {1, -3, 2} is x, -z, y
   std::uint32_t tick_rate = 0;               ///< 0: from the times
   double gap = 0;          ///< [s] missing values are put in within so much; 0: 0.1 s, or three sample periods if that is longer
   bool resample = true;    ///< times off the grid of the rate are resampled; else rounded, and refused if two are in a tick
+  bool restarts = false;   ///< where the time falls, another segment begins
   bool strict = false;     ///< what is missing, out of order or cut is refused
   bool keep_last = false;  ///< take a last line without an end
   bool skip_bad = false;   ///< leave out rows that cannot be read
-  std::vector<std::string> missing{};  ///< more texts that mean "no value"
+  std::vector<DeclaredContact> contacts{};  ///< what users touched: is written into the trace
+  std::vector<std::string> missing{};       ///< more texts that mean "no value"
   CsvText text{};
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include <tactus/base/text.h>
+#include <tactus/trace/csv_time.h>
 
 namespace tactus {
 namespace {
@@ -36,6 +37,13 @@ bool give_point(std::string& field) noexcept {
   return true;
 }
 
+/// "1.000", which was "1,000"
+bool may_be_thousands(std::string_view field) noexcept {
+  if (!field.empty() && (field[0] == '-' || field[0] == '+')) field.remove_prefix(1);
+  const std::size_t point = field.find('.');
+  return point >= 1 && point <= 3 && field[0] != '0' && field.size() == point + 4;
+}
+
 std::size_t end_of_field(std::string_view line, char separator) noexcept {
   return std::min(separator == kBlanks ? line.find_first_of(" \t") : line.find(separator), line.size());
 }
@@ -59,10 +67,11 @@ std::string_view trim_field(std::string_view text) noexcept {
   }
 }
 
-std::size_t split_fields(std::string_view line, char separator, std::vector<std::string>& fields) {
+PointedFields split_fields(std::string_view line, char separator, std::vector<std::string>& fields) {
   if (separator == kBlanks) line = trim_field(line);
   const std::string_view blank = separator == '\t' ? std::string_view(" ") : kBlankBytes;  // an empty field is one, too
-  std::size_t count = 0, pointed = 0;
+  std::size_t count = 0;
+  PointedFields pointed;
   for (bool more = true; more; ++count) {
     if (count == fields.size()) fields.emplace_back();
     std::string& field = fields[count];
@@ -73,7 +82,7 @@ std::size_t split_fields(std::string_view line, char separator, std::vector<std:
     const std::size_t end = end_of_field(line, separator);
     field += trim_field(line.substr(0, end));  // after a closing quote nothing should be left; if it is, the field is no number
     if (separator != ',') give_point(field);
-    else if (is_quoted && give_point(field)) ++pointed;
+    else if (is_quoted && give_point(field)) ++pointed.count, pointed.open += may_be_thousands(field);
     more = end < line.size();
     line.remove_prefix(std::min(end + 1, line.size()));
   }
@@ -91,11 +100,11 @@ bool is_missing_word(std::string_view text) noexcept {
   return std::ranges::any_of(kWords, [&](std::string_view word) { return equals_any_case(text, word); });
 }
 
-bool is_value(std::string_view text) noexcept {
+bool is_value(std::string_view text) {
   if (const auto number = parse_number<double>(text)) return std::isfinite(*number);
-  const auto is_of_time = [](char c) { return std::string_view("0123456789:-./TZtz+ ,").find(c) != std::string_view::npos; };
-  if (text.size() < 5 || text[0] < '0' || text[0] > '9' || !std::ranges::all_of(text, is_of_time)) return false;
-  return text.find(':') != std::string_view::npos || (text.size() >= 10 && text[4] == '-' && text[7] == '-');
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const auto is_time = [](std::string_view of) { return parse_csv_time(of, kSecond, DateOrder::mdy).has_value(); };
+  return text.find_first_of(":/-.") != std::string_view::npos && (is_time(text) || is_time(std::string(text) + " 00:00:00"));
 }
 
 std::string csv_field(std::string_view text) {

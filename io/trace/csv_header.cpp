@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ranges>
 #include <set>
 
 #include <tactus/base/shown.h>
@@ -31,7 +30,7 @@ std::string_view words_of(const CsvLine& line) {
 
 /// What separates the fields of a line of names: the most frequent one outside quotes; blanks if there is no other.
 char separator_of(std::string_view names) noexcept {
-  constexpr std::string_view kMarks = ",;\t";
+  constexpr std::string_view kMarks = ",;\t|";
   std::array<std::size_t, kMarks.size()> counts{};
   bool is_quoted = false;
   for (const char c : names) {
@@ -94,6 +93,7 @@ class Finder {
   bool names_are_in_a_comment(std::size_t values);
   void stack_names(std::vector<Fields> stack);
   void read_preamble(std::size_t end);
+  void take_length_unit(std::string_view field, std::string_view next);
   char separator(std::string_view text) const { return fixed_ != 0 ? fixed_ : separator_of_values(text); }
 
   std::span<const CsvLine> lines_;
@@ -136,15 +136,21 @@ void Finder::has_no_names(std::size_t row) {
 bool Finder::begins_values(std::size_t row, char separator) const {
   const Values values = count_values(split(lines_[rows_[row]].text, separator));
   if (!values.are_values()) return false;
-  if (values.are_all() || row + 1 == rows_.size()) return true;
-  const Values next = count_values(split(lines_[rows_[row + 1]].text, separator));
-  return next.are_values() || next.missing == next.fields;
+  if (values.are_all()) return true;
+  constexpr std::size_t kFollow = 8;  // what a preamble declares of several channels looks like values for some lines
+  for (std::size_t i = row + 1; i < std::min(rows_.size(), row + 1 + kFollow); ++i) {
+    const Values next = count_values(split(lines_[rows_[i]].text, separator));
+    const bool is_text = next.numbers == 0 && next.missing != next.fields;
+    if (is_text || (i == row + 1 && !next.are_values() && next.missing != next.fields)) return false;
+  }
+  return true;
 }
 
 /// As numpy.savetxt, TUM and EuRoC write them.
 bool Finder::names_are_in_a_comment(std::size_t values) {
   const std::size_t wanted = split(lines_[rows_[values]].text, header_.separator).size();
-  for (const std::size_t comment : comments_ | std::views::reverse) {
+  for (std::size_t i = comments_.size(); i-- > 0;) {
+    const std::size_t comment = comments_[i];
     if (comment > rows_[values]) continue;
     const std::string_view text = words_of(lines_[comment]);
     for (const char separator : {header_.separator, ',', ';', '\t', kBlanks}) {
@@ -176,13 +182,10 @@ void Finder::stack_names(std::vector<Fields> stack) {
     stack.erase(stack.begin());
   }
   header_.names = stack[0];
-  const auto are_unique = [](const Fields& names) {
-    return std::set<std::string>(names.begin(), names.end()).size() == names.size();
-  };
-  if (are_unique(header_.names)) return;
   std::set<std::size_t> doubled;
   for (std::size_t i = 0; i < stack[0].size(); ++i)
-    if (std::ranges::count(stack[0], stack[0][i]) > 1) doubled.insert(i);
+    if (!stack[0][i].empty() && std::ranges::count(stack[0], stack[0][i]) > 1) doubled.insert(i);
+  if (doubled.empty() || stack.size() == 1) return;
   for (std::size_t level = 1; level < stack.size(); ++level) {
     Fields& above = stack[level];
     for (std::size_t i = 1; i < above.size(); ++i)
@@ -199,15 +202,24 @@ void Finder::stack_names(std::vector<Fields> stack) {
       "", "names are in several lines: a column is called, for example, '" + shown(header_.names[*doubled.begin()]) + '\'');
 }
 
+/// "Length Units,Millimeters", "Units: mm"
+void Finder::take_length_unit(std::string_view field, std::string_view next) {
+  std::size_t word = field.find("nits");
+  if (word == std::string_view::npos) word = field.find("nit");
+  if (word == std::string_view::npos || word == 0 || (field[word - 1] | 0x20) != 'u') return;
+  const std::size_t colon = field.find_first_of(":=", word);
+  const std::string_view told = colon == std::string_view::npos || colon + 1 == field.size() ? next : field.substr(colon + 1);
+  if (const auto unit = unit_of(told); unit && unit->dimension == CsvDimension::length) header_.length_unit = trim_field(told);
+}
+
 /// Lines ahead of the names. Of what they declare, the unit of lengths is known.
 void Finder::read_preamble(std::size_t end) {
   for (std::size_t row = 0; row < end; ++row) {
     const CsvLine& line = lines_[rows_[row]];
     const Fields fields = split(line.text, separator_of(line.text));
-    for (std::size_t i = 0; i + 1 < fields.size(); ++i)
-      if (fields[i] == "Length Units" || fields[i] == "Units") header_.length_unit = fields[i + 1];
-    header_.notes.add("", "lines ahead of the names are no values: '" + shown(line.text, 100) + '\'',
-                      "line " + std::to_string(line.number));
+    for (std::size_t i = 0; i < fields.size(); ++i) take_length_unit(fields[i], i + 1 < fields.size() ? fields[i + 1] : "");
+    header_.notes.add("", "lines ahead of the names are no values",
+                      "line " + std::to_string(line.number) + ", '" + shown(line.text, 100) + '\'');
   }
 }
 

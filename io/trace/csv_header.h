@@ -22,6 +22,7 @@ struct CsvLine {
   std::uint64_t number = 0;  ///< counts from 1
   std::string text;
   bool is_comment = false;
+  bool is_after_blank = false;
   bool is_open = false;  ///< the table ends without an end of this line
 };
 

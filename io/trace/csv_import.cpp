@@ -3,8 +3,10 @@
 #include <set>
 
 #include <tactus/base/rule.h>
+#include <tactus/base/shown.h>
 #include <tactus/base/text.h>
 #include <tactus/trace/csv.h>
+#include <tactus/trace/csv_fields.h>
 #include <tactus/trace/csv_plan.h>
 #include <tactus/trace/csv_reader.h>
 #include <tactus/trace/csv_timeline.h>
@@ -20,6 +22,13 @@ tl::unexpected<Diagnostic> refuse(const Error& error, std::uint64_t line) {
 CsvResult<CsvReader> open_table(const std::string& path, const CsvMapping& mapping) {
   auto reader = CsvReader::open(path, mapping.text);
   if (!reader) return tl::unexpected(Diagnostic{reader.error()});
+  if (const auto kind = reader->foreign(); !kind.empty())
+    return tl::unexpected(Diagnostic{
+        .error = fail(Errc::malformed, "R-CSV-1").value(),
+        .detail = "it is " + std::string(kind),
+        .remedy =
+            "Convert it to a text with commas between fields (Excel: save as CSV; MATLAB: writetable; NumPy: numpy.savetxt), or "
+            "take its arrays with tactus.Trace.from_arrays in Python."});
   const auto has_names = reader->names();
   if (!has_names) return refuse(has_names.error(), reader->line() + 1);
   if (!*has_names) return refuse(fail(Errc::truncated, "R-CSV-1").value(), 1);
@@ -56,11 +65,33 @@ CsvResult<bool> takes_line(const CsvReader& reader, const CsvMapping& mapping, C
   return false;
 }
 
+/// Columns that the mapping leaves out may say something about those that it takes.
+void note_unread(CsvNamedPlan& plan) {
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < plan.names.size(); ++i) {
+    if (plan.used[i] || plan.names[i].empty()) continue;
+    if (++count <= 8) names += (count == 1 ? "" : ", ") + shown(plan.names[i], 40);
+  }
+  if (count > 0) plan.notes.add("", "columns that are not read: " + names + (count > 8 ? ", ..." : ""));
+}
+
+/// A file may hold several tables with blank lines between them, the next one with its own names.
+bool ends_here(const CsvReader& reader, CsvNamedPlan& plan) {
+  const auto& fields = reader.fields();
+  if (!reader.is_after_blank() || fields.size() >= plan.names.size() || fields[0].empty() || is_value(fields[0])) return false;
+  plan.notes.add("", "another table follows behind a blank line and is not read",
+                 "line " + std::to_string(reader.line()) + ", '" + shown(fields[0], 40) + "'; --skip-lines " +
+                     std::to_string(reader.line() - 1) + " reads it alone");
+  return true;
+}
+
 CsvResult<CsvImport> run(CsvReader& reader, const CsvMapping& mapping, CsvNamedPlan& plan, CsvRows& rows, CsvTimeline& timeline) {
   while (true) {
     const auto more = reader.next();
     if (!more) return refuse(more.error(), reader.line() + 1);
     if (!*more) break;
+    if (ends_here(reader, plan)) break;
     TACTUS_TRY(const bool is_whole, takes_line(reader, mapping, plan));
     if (!is_whole) break;
     TACTUS_TRY(auto row, rows.parse(reader));
@@ -71,9 +102,19 @@ CsvResult<CsvImport> run(CsvReader& reader, const CsvMapping& mapping, CsvNamedP
     if (added.error().line == 0) added.error().line = line;
     return tl::unexpected(added.error());
   }
-  if (reader.decimal_commas() > 0)
-    plan.notes.add(
-        "", std::to_string(reader.decimal_commas()) + " numbers in quotes have a comma, which is taken for the decimal point");
+  const PointedFields& commas = reader.decimal_commas();
+  if (commas.count > 0 && commas.open == commas.count)
+    return tl::unexpected(
+        Diagnostic{.error = fail(Errc::invalid_argument, "R-CSV-10").value(),
+                   .line = reader.line(),
+                   .detail = "numbers in quotes, such as \"1,000\", may be thousands or decimals",
+                   .remedy = "Save the table without separators of thousands, or with semicolons between fields."});
+  if (commas.count > 0)
+    plan.notes.add("", std::to_string(commas.count) + " numbers in quotes have a comma, which is taken for the decimal point");
+  if (reader.repeated_names() > 0)
+    plan.notes.add("", "lines of names come again and are left out: " + std::to_string(reader.repeated_names()),
+                   "line " + std::to_string(reader.first_repeated()));
+  note_unread(plan);
   auto done = timeline.finish();
   if (!done && done.error().line == 0)
     done.error().line = reader.line() + (done.error().error.rule == std::string_view("R-CSV-1") ? 1 : 0);

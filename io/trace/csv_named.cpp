@@ -11,6 +11,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
 #include <tactus/base/text.h>
+#include <tactus/trace/csv_fields.h>
 #include <tactus/trace/csv_plan.h>
 #include <tactus/trace/csv_units.h>
 
@@ -30,6 +31,8 @@ class NamedPlanner {
 
  private:
   void plan_time();
+  void plan_second_time(const std::string& name);
+  void guess_fraction();
   void plan_subject(const CsvQuantities& q, const std::string& object, const std::string& user);
   void plan_rotation(const CsvQuantities& q, CsvChannel& channel);
   void plan_quaternion(std::array<std::string, 4> columns, CsvChannel& channel);
@@ -61,6 +64,18 @@ std::string lower(std::string_view text) {
   return out;
 }
 
+/// "Rigid Body cup 1 Position X" for "cup Position X": these words in this order, the last one at the end.
+bool has_words(std::string_view column, std::string_view name) {
+  std::vector<std::string> words, wanted;
+  split_fields(column, kBlanks, words);
+  split_fields(name, kBlanks, wanted);
+  if (wanted.size() < 2 || words.back() != wanted.back()) return false;
+  std::size_t next = 0;
+  for (const std::string& word : words)
+    if (next < wanted.size() && word == wanted[next]) ++next;
+  return next == wanted.size();
+}
+
 /// All columns that may be meant; the first way of naming by which there is one counts.
 std::vector<std::size_t> NamedPlanner::find(const std::string& name) const {
   const auto all = [&](auto is_meant) {
@@ -74,7 +89,8 @@ std::vector<std::size_t> NamedPlanner::find(const std::string& name) const {
     if (const auto number = parse_number<std::size_t>(name.substr(1)); number && *number >= 1 && *number <= plan_.names.size())
       return {*number - 1};
   if (auto found = all([&](const std::string& n) { return without_brackets(n) == name; }); !found.empty()) return found;
-  return all([&](const std::string& n) { return n.size() > name.size() + 1 && n.ends_with(' ' + name); });
+  if (auto found = all([&](const std::string& n) { return n.ends_with(' ' + name); }); !found.empty()) return found;
+  return all([&](const std::string& n) { return has_words(n, name); });
 }
 
 std::size_t NamedPlanner::column(const std::string& name) {
@@ -121,14 +137,16 @@ std::string NamedPlanner::option_of(CsvDimension dimension) const {
 double NamedPlanner::scale_of(std::size_t column, CsvDimension dimension) {
   const std::string& name = plan_.names[column];
   UnitInName told = unit_in_name(name, dimension);
+  const char* source = "its name says";
   if (!told.unit && !header_.units.empty() && !header_.units[column].empty()) {
     const auto unit = unit_of(header_.units[column]);
-    if (unit && unit->dimension == dimension) told = {unit, {}};
+    if (unit && unit->dimension == dimension) told = {unit, {}}, source = "the line of units says";
     else if (unit) told.foreign = header_.units[column];
   }
   const bool is_length = dimension == CsvDimension::length;
   if (!told.unit && is_length && !header_.length_unit.empty())
-    if (const auto unit = unit_of(header_.length_unit); unit && unit->dimension == dimension) told.unit = unit;
+    if (const auto unit = unit_of(header_.length_unit); unit && unit->dimension == dimension)
+      told.unit = unit, source = "the lines ahead of the names say";
   const std::string option = option_of(dimension);
   double wanted = is_length || dimension == CsvDimension::speed ? mapping_.length_scale : 1;
   bool is_given = mapping_.says_length && (is_length || dimension == CsvDimension::speed);
@@ -142,9 +160,10 @@ double NamedPlanner::scale_of(std::size_t column, CsvDimension dimension) {
   if (told.unit) {
     if (is_given && std::abs(wanted / told.unit->scale - 1) > 1e-9)
       mistake(Errc::invalid_argument, "R-CSV-10", name,
-              "The name says " + std::string(told.unit->name) + ": leave the option for its unit out, or rename the column.");
+              "It is " + std::string(told.unit->name) + ", as " + source +
+                  ": leave the option for its unit out, or correct the table.");
     if (!is_given && told.unit->scale != 1)
-      plan_.notes.add("column " + name, "in " + std::string(told.unit->name) + ", as its name says");
+      plan_.notes.add("column " + name, "in " + std::string(told.unit->name) + ", as " + source);
     return told.unit->scale;
   }
   if (!told.foreign.empty() && !is_given) {
@@ -164,10 +183,55 @@ CsvNumber NamedPlanner::number(const std::string& name, CsvDimension dimension) 
 
 void NamedPlanner::plan_time() {
   if (mapping_.time.empty()) return;
-  plan_.time = column(mapping_.time);
+  std::vector<std::string> columns{mapping_.time};
+  if (find(mapping_.time).empty()) split_fields(mapping_.time, ',', columns);
+  if (columns.size() > 2) return mistake(Errc::malformed, "R-CSV-2", mapping_.time, "A time has one column, or two.");
+  plan_.time = column(columns[0]);
   plan_.time_is_told = !mapping_.time_unit.empty() || unit_in_name(plan_.names[*plan_.time], CsvDimension::time).unit ||
                        (!header_.units.empty() && unit_of(header_.units[*plan_.time]));
+  if (mapping_.time_unit == kTickUnit) {
+    if (mapping_.tick_rate == 0) return mistake(Errc::invalid_argument, "R-CSV-7", mapping_.time, "Give --tick-rate HZ.");
+    plan_.time_unit = std::llround(1e9 / mapping_.tick_rate);
+    return;
+  }
   plan_.time_unit = std::llround(1e9 * scale_of(*plan_.time, CsvDimension::time));
+  if (columns.size() == 2) plan_second_time(columns[1]);
+  else guess_fraction();
+}
+
+/// What stands beside a date or seconds.
+void NamedPlanner::plan_second_time(const std::string& name) {
+  const std::size_t second = column(name);
+  auto unit = unit_in_name(plan_.names[second], CsvDimension::time).unit;
+  if (!unit && !header_.units.empty())
+    if (const auto told = unit_of(header_.units[second]); told && told->dimension == CsvDimension::time) unit = told;
+  if (!unit) {
+    plan_.clock = second;
+    return;
+  }
+  plan_.fraction = second;
+  plan_.fraction_unit = std::llround(1e9 * unit->scale);
+  if (plan_.fraction_unit >= plan_.time_unit)
+    mistake(Errc::invalid_argument, "R-CSV-10", name, "Name the column of seconds first, and then that of their fraction.");
+}
+
+/// "stamp.nanosec" beside "stamp.sec".
+void NamedPlanner::guess_fraction() {
+  const std::string_view name = plan_.names[*plan_.time];
+  for (const std::string_view unit : {"seconds", "secs", "sec"}) {
+    if (!name.ends_with(unit)) continue;
+    const std::string_view stem = name.substr(0, name.size() - unit.size());
+    for (std::size_t i = 0; i < plan_.names.size(); ++i) {
+      if (i == *plan_.time || !plan_.names[i].starts_with(stem)) continue;
+      const auto found = unit_of(std::string_view(plan_.names[i]).substr(stem.size()));
+      if (!found || found->dimension != CsvDimension::time || found->scale >= 1) continue;
+      plan_.fraction = i;
+      plan_.fraction_unit = std::llround(1e9 * found->scale);
+      plan_.fraction_is_guess = true;
+      return;
+    }
+    return;
+  }
 }
 
 void NamedPlanner::plan_quaternion(std::array<std::string, 4> columns, CsvChannel& channel) {
@@ -179,6 +243,11 @@ void NamedPlanner::plan_quaternion(std::array<std::string, 4> columns, CsvChanne
     if (found.size() != 1) column(columns[i]);
     const char axis = found.size() == 1 ? axis_in_name(plan_.names[found[0]]) : static_cast<char>(0);
     if (axis != 0) by_name[i] = axis, ++known;
+  }
+  if (known == 3 && std::set<char>(by_name.begin(), by_name.end()).size() == 4) {  // the fourth is the one that is left
+    for (const char axis : std::string_view("wxyz"))
+      if (by_name.find(axis) == std::string::npos) by_name[by_name.find(' ')] = axis;
+    known = 4;
   }
   const std::string_view option =
       mapping_.quaternion_order == QuaternionOrder::by_names ? "" : kListed[mapping_.quaternion_order == QuaternionOrder::xyzw];
@@ -196,10 +265,10 @@ void NamedPlanner::plan_quaternion(std::array<std::string, 4> columns, CsvChanne
                   ": list the columns in that order, or give --quaternion-order.");
     channel.rotation[std::string_view("wxyz").find(order[i])] = {column(columns[i]), 1};
   }
-  if (known == 0 && option.empty())
-    plan_.notes.add(
-        "column " + columns[0],
-        "rotations are taken as w, x, y, z: the columns are not called so; --quaternion-order xyzw is the other order");
+  if (known != 0 || !option.empty()) return;
+  channel.order = CsvChannel::Order::counted;
+  for (std::size_t i = 0; i < 4; ++i)
+    if (!plan_.names[*channel.rotation[i].column].ends_with(static_cast<char>('0' + i))) channel.order = CsvChannel::Order::open;
 }
 
 void NamedPlanner::plan_euler(const CsvQuantities& q, CsvChannel& channel) {
@@ -223,13 +292,14 @@ void NamedPlanner::plan_euler(const CsvQuantities& q, CsvChannel& channel) {
   const bool is_fixed = !mapping_.euler_order.empty() && std::islower(static_cast<unsigned char>(mapping_.euler_order[0])) != 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t to = is_fixed ? 2 - i : i;
+    channel.euler_axes[to] = static_cast<std::uint8_t>(order[i] - 'x');
+    if (columns[i] == kZeroColumn && find(columns[i]).empty()) continue;  // that angle is 0
     const std::size_t found = column(columns[i]);
     const bool is_told = !mapping_.angle_unit.empty() || unit_in_name(plan_.names[found], CsvDimension::angle).unit ||
                          (!header_.units.empty() && unit_of(header_.units[found]));
     if (!is_told)
       mistake(Errc::invalid_argument, "R-CSV-10", columns[i], "Say whether the angles are degrees: --angle-unit deg or rad.");
     channel.rotation[to] = {found, scale_of(found, CsvDimension::angle)};
-    channel.euler_axes[to] = static_cast<std::uint8_t>(order[i] - 'x');
   }
 }
 
@@ -277,13 +347,18 @@ void NamedPlanner::plan_subject(const CsvQuantities& q, const std::string& objec
   }
   if (has_angular_velocity && !has_rotation && mapping_.angular_velocity_frame == AngularVelocityFrame::body)
     mistake(Errc::invalid_argument, "R-CSV-8", "rotation");
-  const bool has_device = has_group(q.device), has_force = has_group(q.force);
+  const bool has_device = has_group(q.device), has_force = has_group(q.force), has_hold = has_group(q.device_rotation);
+  if (has_hold && !has_device)
+    mistake(Errc::invalid_argument, "R-CSV-8", q.device_rotation[0], "Map the position of the device, too.");
   if (!has_device && !has_force) return;
   const auto index = static_cast<std::uint32_t>(plan_.info.users.size());
   plan_.info.users.push_back({user});
-  if (has_device)
-    plan_.channels.push_back(
-        {.kind = CsvChannel::Kind::device, .index = index, .position = vector_of(q.device, CsvDimension::length)});
+  if (has_device) {
+    CsvChannel device{.kind = CsvChannel::Kind::device, .index = index, .position = vector_of(q.device, CsvDimension::length)};
+    if (has_hold) device.turn = CsvChannel::Turn::quaternion, plan_quaternion(q.device_rotation, device);
+    plan_.info.users.back().senses.orientation = has_hold;
+    plan_.channels.push_back(device);
+  }
   if (has_force)
     plan_.channels.push_back(
         {.kind = CsvChannel::Kind::force, .index = index, .position = vector_of(q.force, CsvDimension::force)});

@@ -30,7 +30,9 @@ struct CsvChannel {
   std::uint32_t index = 0;              ///< of the object or user
   std::array<CsvNumber, 3> position{};  ///< or force
   Turn turn = Turn::none;
-  std::array<CsvNumber, 9> rotation{};       ///< quaternion: w, x, y, z
+  std::array<CsvNumber, 9> rotation{};  ///< quaternion: w, x, y, z
+  enum class Order : std::uint8_t { known, counted, open };
+  Order order = Order::known;  ///< of the quaternion; counted: columns end with 0, 1, 2, 3, which mostly are w, x, y, z
   std::array<std::uint8_t, 3> euler_axes{};  ///< in the order of turning about axes of the object
   bool has_velocity = false, has_angular_velocity = false;
   std::array<CsvNumber, 3> velocity{}, angular_velocity{};
@@ -41,6 +43,10 @@ struct CsvNamedPlan {
   TraceInfo info;                    ///< of a long table without objects and users
   std::vector<CsvChannel> channels;  ///< of a long table: of each object
   std::optional<std::size_t> time, segment, object;
+  std::optional<std::size_t> clock;     ///< the time of day of `time`, which is a date
+  std::optional<std::size_t> fraction;  ///< is added to `time`
+  bool fraction_is_guess = false;       ///< its name alone tells so
+  std::int64_t fraction_unit = 1;
   std::int64_t time_unit = 1'000'000'000;  ///< [ns]
   bool time_is_told = false;               ///< by option or name
   std::vector<bool> used;                  ///< per column

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include <tactus/base/rule.h>
@@ -14,6 +15,9 @@ constexpr std::size_t kPiece = 64u << 10;
 constexpr std::size_t kMaxLine = 1u << 20;
 constexpr std::size_t kMaxAhead = 4u << 20;                                // bytes looked at for the names
 constexpr std::array<std::uint8_t, 4> kZstdMagic{0x28, 0xB5, 0x2F, 0xFD};  // RFC 8878 3.1.1
+
+/// A byte order mark begins a line where files are put together.
+std::string_view without_mark(std::string_view line) noexcept { return line.starts_with("\xEF\xBB\xBF") ? line.substr(3) : line; }
 
 bool is_comment(std::string_view text) noexcept { return text[0] == '#' || text[0] == '%' || text.starts_with("//"); }
 
@@ -39,6 +43,24 @@ Result<void> CsvReader::start(const CsvText& format) {
     TACTUS_TRY(const auto line, next_line());
     if (!line) break;
   }
+  return {};
+}
+
+std::string_view CsvReader::foreign() const noexcept {
+  const std::string_view begin = std::string_view(text_).substr(0, 4096);
+  constexpr std::pair<std::string_view, std::string_view> kKinds[]{{"PK\x03\x04", "an Excel workbook, or another zip archive"},
+                                                                   {"\xD0\xCF\x11\xE0", "an old Excel workbook"},
+                                                                   {"MATLAB 5.0 MAT-file", "a MATLAB file"},
+                                                                   {"\x89HDF", "an HDF5 or MATLAB file"},
+                                                                   {"\x93NUMPY", "a NumPy array"},
+                                                                   {"\x1F\x8B", "compressed by gzip"},
+                                                                   {"ROSBAG", "a ROS 1 bag"},
+                                                                   {"\x89MCAP", "an MCAP recording"},
+                                                                   {"SQLite format 3", "a SQLite database"}};
+  for (const auto& [magic, kind] : kKinds)
+    if (begin.starts_with(magic)) return kind;
+  const std::size_t first = begin.find_first_not_of(" \t\r\n[");
+  if (first != std::string_view::npos && begin.substr(first).starts_with('{')) return "JSON";
   return {};
 }
 
@@ -99,34 +121,55 @@ Result<std::optional<std::string_view>> CsvReader::next_row() {
     const CsvLine& line = ahead_[replayed_++];
     line_ = line.number;
     is_open_ = line.is_open;
+    is_after_blank_ = line.is_after_blank;
     if (!line.is_comment) return std::string_view(line.text);
   }
-  while (true) {
+  for (is_after_blank_ = false;; is_after_blank_ = true) {
     TACTUS_TRY(const auto line, next_line());
     if (!line) return std::nullopt;
-    const std::string_view text = trim_field(*line);
-    if (!text.empty() && !is_comment(text)) return *line;
+    const std::string_view text = trim_field(without_mark(*line));
+    if (!text.empty() && !is_comment(text)) return without_mark(*line);
   }
 }
 
+bool CsvReader::is_name_again(std::string_view line) {
+  const auto is_it = [&](const CsvLine& name) { return !name.is_comment && name.text == line; };
+  const auto names = std::span(ahead_).first(std::min(header_.values, ahead_.size()));
+  if (!std::ranges::any_of(names, is_it)) return false;
+  if (repeated_names_++ == 0) first_repeated_ = line_;
+  return true;
+}
+
 Result<bool> CsvReader::next() {
-  TACTUS_TRY(const auto row, next_row());
-  if (!row) return false;
-  bytes_ = row->size();
-  decimal_commas_ += split_fields(*row, header_.separator, fields_);
-  if (fields_.size() == header_.names.size() + 1 && fields_.back().empty()) fields_.pop_back();
+  auto row = next_row();
+  while (row && *row && is_name_again(**row)) row = next_row();
+  if (!row) return tl::make_unexpected(row.error());
+  if (!*row) return false;
+  bytes_ = (*row)->size();
+  const PointedFields pointed = split_fields(**row, header_.separator, fields_);
+  decimal_commas_.count += pointed.count;
+  decimal_commas_.open += pointed.open;
+  while (fields_.size() > header_.names.size() && fields_.back().empty()) fields_.pop_back();
   return true;
 }
 
 /// Lines until find_header() has what it needs.   out  false: there are none
 Result<bool> CsvReader::look_ahead() {
   std::size_t bytes = 0, rows = 0;
+  bool is_after_blank = false;
   while (rows < kHeaderLines && bytes < kMaxAhead) {
     TACTUS_TRY(const auto line, next_line());
     if (!line) break;
-    const std::string_view text = trim_field(*line);
-    if (text.empty()) continue;
-    ahead_.push_back({line_, std::string(*line), is_comment(text), is_open_});
+    const std::string_view text = trim_field(without_mark(*line));
+    if (text.empty()) {
+      is_after_blank = true;
+      continue;
+    }
+    ahead_.push_back({.number = line_,
+                      .text = std::string(without_mark(*line)),
+                      .is_comment = is_comment(text),
+                      .is_after_blank = std::exchange(is_after_blank, false),
+                      .is_open = is_open_});
     bytes += line->size();
     if (!ahead_.back().is_comment) ++rows;
     if (ahead_.back().is_comment && ahead_.size() - rows > 2 * kHeaderLines) ahead_.erase(ahead_.begin());  // the last ones count

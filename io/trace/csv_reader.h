@@ -26,6 +26,8 @@ class CsvReader {
  public:
   /// err  io R-TRC-1; truncated, malformed R-CSV-1: damaged zstd data; limit_exceeded R-CSV-6: a line over 1 MiB, R-CSV-9
   static Result<CsvReader> open(const std::string& path, const CsvText& format = {});
+  /// What the file is instead of a text: "an Excel workbook, or another zip archive"; empty: a text.
+  std::string_view foreign() const noexcept;
   /// Find the names, which are then the fields; false: the table is empty.   pre  first call
   Result<bool> names();
   const CsvHeader& header() const noexcept { return header_; }  ///< valid after names()
@@ -36,7 +38,11 @@ class CsvReader {
   std::uint64_t line() const noexcept { return line_; }  ///< counts from 1
   bool is_open() const noexcept { return is_open_; }     ///< the table ends within this line, or without an end of it
   std::size_t bytes() const noexcept { return bytes_; }  ///< of this line
-  std::uint64_t decimal_commas() const noexcept { return decimal_commas_; }  ///< numbers in quotes so far
+  /// Lines that stand ahead of the values, too, and were left out, as where tables are put together; of which the first one.
+  std::uint64_t repeated_names() const noexcept { return repeated_names_; }
+  std::uint64_t first_repeated() const noexcept { return first_repeated_; }
+  const PointedFields& decimal_commas() const noexcept { return decimal_commas_; }  ///< so far
+  bool is_after_blank() const noexcept { return is_after_blank_; }                  ///< a blank line stands ahead of this one
 
  private:
   explicit CsvReader(ByteSource source) : source_(std::move(source)) {}
@@ -46,6 +52,7 @@ class CsvReader {
   Result<std::optional<std::string_view>> next_line();
   Result<std::optional<std::string_view>> next_row();
   Result<bool> look_ahead();
+  bool is_name_again(std::string_view line);
 
   ByteSource source_;
   std::optional<StreamDecompressor> zstd_;
@@ -55,7 +62,9 @@ class CsvReader {
   std::string text_;
   std::size_t line_start_ = 0, scanned_ = 0;  // in text_
   bool ended_ = false, is_open_ = false;
-  std::uint64_t line_ = 0, decimal_commas_ = 0;
+  std::uint64_t line_ = 0, repeated_names_ = 0, first_repeated_ = 0;
+  PointedFields decimal_commas_;
+  bool is_after_blank_ = false;
   std::size_t bytes_ = 0;
   CsvNames wanted_names_ = CsvNames::automatic;
   CsvHeader header_;

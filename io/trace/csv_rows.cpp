@@ -163,10 +163,10 @@ void CsvRows::turn_axes(RigidSample& sample, bool is_object) const {
     return Vec3{part(mapping_.axes[0]), part(mapping_.axes[1]), part(mapping_.axes[2])};
   };
   sample.pose.position = turned(sample.pose.position);
-  if (!is_object) return;
   const Quat& q = sample.pose.rotation;
   const Vec3 axis = mirror_ * turned({q.x, q.y, q.z}) + Vec3{};
   sample.pose.rotation = {q.w, axis.x, axis.y, axis.z};
+  if (!is_object) return;
   sample.velocity = turned(sample.velocity);
   sample.angular_velocity = mirror_ * turned(sample.angular_velocity);
 }
@@ -176,8 +176,7 @@ void CsvRows::settle_unit(const std::string& field) {
   if (plan_.time_is_told) return;
   const auto unit = unit_of_epoch(field);
   if (!unit) return;
-  plan_.time_unit = *unit;
-  plan_.time_is_told = true;
+  plan_.time_unit = *unit;  // a guess: an implausible rate is asked about
   const char* name = *unit == 1           ? "nanoseconds"
                      : *unit == 1000      ? "microseconds"
                      : *unit == 1'000'000 ? "milliseconds"
@@ -187,26 +186,74 @@ void CsvRows::settle_unit(const std::string& field) {
                     std::string("taken as ") + name + " since 1970, as the numbers are that large");
 }
 
+/// Of a sensor that has seconds and nanoseconds apart.
+bool CsvRows::add_fraction(const std::vector<std::string>& fields, CsvTime& time) {
+  const auto part = parse_csv_time(fields[*plan_.fraction], plan_.fraction_unit);
+  const bool fits = part && part->nanoseconds >= 0 && part->nanoseconds < plan_.time_unit;
+  const std::string& name = plan_.names[*plan_.fraction];
+  if (plan_.fraction_is_guess && !has_time_) {
+    if (!fits || text_.find_first_not_of("0123456789") != std::string::npos) return plan_.fraction.reset(), true;
+    plan_.used[*plan_.fraction] = true;
+    plan_.notes.add("column " + plan_.names[*plan_.time], shown(name) + " is added to it, as its fraction");
+  }
+  column_ = *plan_.fraction;
+  text_ = fields[column_];
+  if (!fits) remedy_ = "It is no fraction of the column before: name one column that holds the whole time (--time COLUMN).";
+  if (fits) time.nanoseconds += part->nanoseconds;
+  return fits;
+}
+
 bool CsvRows::read_time(const std::vector<std::string>& fields, CsvRow& row) {
   column_ = *plan_.time;
   text_ = fields[column_];
+  if (plan_.clock) text_ += ' ' + fields[*plan_.clock];
   if (!has_time_) settle_unit(text_);
-  const auto time = parse_csv_time(text_, plan_.time_unit);
+  const auto order = static_cast<DateOrder>(mapping_.date_order);
+  auto time = parse_csv_time(text_, plan_.time_unit, order);
+  if (!time && order == DateOrder::by_digits && parse_csv_time(text_, plan_.time_unit, DateOrder::mdy))
+    remedy_ = "Say which number is the month: --date-order mdy or dmy.";
   if (!time || (has_time_ && time->kind != kind_)) return false;
-  constexpr std::int64_t kDay = 86'400'000'000'000;
+  if (plan_.clock && time->kind != CsvTimeKind::date) return false;
+  if (plan_.fraction && time->kind == CsvTimeKind::number && !add_fraction(fields, *time)) return false;
+  const std::int64_t turn = std::ranges::count(text_, ':') == 1 ? kDayUnit / 24 : kDayUnit;  // of minutes: past the hour
   row.time = time->nanoseconds;
   if (time->kind == CsvTimeKind::clock) {  // past midnight
-    if (has_time_ && row.time + days_ < last_time_ - kDay / 2) days_ += kDay;
-    row.time += days_;
+    if (has_time_ && row.time + wrapped_ < last_time_ - turn / 2) wrapped_ += turn;
+    row.time += wrapped_;
   }
   if (time->kind != CsvTimeKind::number) plan_.time_is_told = true;
   if (!has_time_) {
-    if (time->kind == CsvTimeKind::date || (unit_of_epoch(text_) == plan_.time_unit)) first_date_ = row.time;
+    if (time->kind == CsvTimeKind::date || unit_of_epoch(fields[*plan_.time]) == plan_.time_unit) first_date_ = row.time;
     has_time_ = true;
     kind_ = time->kind;
   }
   last_time_ = row.time;
   return true;
+}
+
+/// By the first rotation: recordings mostly begin near none, so that w is near 1.
+CsvResult<void> CsvRows::settle_order(const std::vector<std::string>& fields, CsvChannel& channel) {
+  std::array<double, 4> n{};
+  if (read(fields, channel.rotation, std::span(n)) != Read::value) return {};
+  if (!is_rotation_length(length_of({n[0], n[1], n[2], n[3]}))) return {};
+  constexpr double kNear = 0.95;
+  const bool is_counted = channel.order == CsvChannel::Order::counted, is_last = std::abs(n[3]) > kNear;
+  column_ = *channel.rotation[0].column;
+  if ((is_counted && is_last) || (!is_counted && !is_last && std::abs(n[0]) <= kNear)) {
+    text_ = fields[column_];
+    for (std::size_t i = 1; i < 4; ++i) text_ += ", " + fields[*channel.rotation[i].column];
+    Diagnostic error = wrong("R-CSV-10", "Which of the four is w? Give --quaternion-order wxyz or xyzw.");
+    error.error = fail(Errc::invalid_argument, "R-CSV-10").value();
+    return tl::unexpected(error);
+  }
+  channel.order = CsvChannel::Order::known;
+  if (is_last) std::rotate(channel.rotation.begin(), channel.rotation.begin() + 3, channel.rotation.begin() + 4);
+  const std::string why = is_counted ? "counted from 0" : "the first one is near none";
+  plan_.notes.add("column " + plan_.names[column_],
+                  std::string("rotations are taken as ") + (is_last ? "x, y, z, w" : "w, x, y, z") + ": " + why +
+                      "; --quaternion-order says otherwise",
+                  at());
+  return {};
 }
 
 bool CsvRows::find_object(const std::vector<std::string>& fields, std::size_t& index) {
@@ -222,26 +269,39 @@ bool CsvRows::find_object(const std::vector<std::string>& fields, std::size_t& i
   return true;
 }
 
+/// What is not read may be lacking, at the end.
+bool CsvRows::has_all(const std::vector<std::string>& fields) {
+  if (fields.size() >= plan_.names.size()) return fields.size() == plan_.names.size();
+  const auto lacking = plan_.used.begin() + static_cast<std::ptrdiff_t>(fields.size());
+  if (std::find(lacking, plan_.used.end(), true) != plan_.used.end() || plan_.fraction.value_or(0) >= fields.size()) return false;
+  plan_.notes.add("", "rows lack fields at their end, of columns that are not read", at());
+  return true;
+}
+
 CsvResult<std::optional<CsvRow>> CsvRows::parse(const CsvReader& reader) {
   const auto& fields = reader.fields();
   line_ = reader.line();
   text_.clear();
+  remedy_.clear();
   const auto refuse_row = [&](RuleName rule, std::string_view what) -> CsvResult<std::optional<CsvRow>> {
     if (!mapping_.skip_bad)
       return tl::unexpected(wrong(
           rule,
-          std::string_view(rule) == "R-CSV-3"
+          !remedy_.empty() ? remedy_
+          : std::string_view(rule) == "R-CSV-3"
               ? "Correct the row, or leave such rows out with --skip-bad."
               : "Correct the field; if it means that there is no value, give --missing TEXT; --skip-bad leaves such rows out."));
     plan_.notes.add("", what, at());
     return std::optional<CsvRow>();
   };
-  if (fields.size() != plan_.names.size()) return refuse_row("R-CSV-3", "rows with another number of fields are left out");
+  if (!has_all(fields)) return refuse_row("R-CSV-3", "rows with another number of fields are left out");
   CsvRow row{.line = line_, .time = 0, .bytes = reader.bytes() + 1, .segment = {}, .values = {}};
   if (plan_.segment) row.segment = fields[*plan_.segment];
   if (plan_.time) {
-    if (is_missing_word(fields[*plan_.time])) {
-      column_ = *plan_.time;
+    const auto lacks = [&](std::optional<std::size_t> column) { return column && is_missing_word(fields[*column]); };
+    const bool lacks_time = lacks(plan_.time);
+    if (lacks_time || lacks(plan_.clock) || lacks(plan_.fraction)) {
+      column_ = lacks_time ? *plan_.time : plan_.clock ? *plan_.clock : *plan_.fraction;
       text_ = fields[column_];
       if (mapping_.strict) return tl::unexpected(wrong("R-CSV-4", "Correct the time, or do not give --strict."));
       plan_.notes.add("column " + plan_.names[column_], "rows without a time are left out", at());
@@ -254,6 +314,7 @@ CsvResult<std::optional<CsvRow>> CsvRows::parse(const CsvReader& reader) {
   for (std::size_t i = 0; i < plan_.channels.size(); ++i) {
     CsvValue& value = row.values.emplace_back();
     value.channel = static_cast<std::uint32_t>(object * plan_.channels.size() + i);
+    if (plan_.channels[i].order != CsvChannel::Order::known) TACTUS_CHECK(settle_order(fields, plan_.channels[i]));
     const Read done = read_sample(fields, plan_.channels[i], value.sample);
     if (done == Read::wrong) return refuse_row("R-CSV-4", "rows with a field that cannot be read are left out");
     value.is_there = done == Read::value;

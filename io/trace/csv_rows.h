@@ -47,8 +47,11 @@ class CsvRows {
   Read read_sample(const std::vector<std::string>& fields, const CsvChannel& channel, RigidSample& sample);
   Read read_rotation(const std::vector<std::string>& fields, const CsvChannel& channel, Quat& rotation);
   bool read_time(const std::vector<std::string>& fields, CsvRow& row);
+  bool add_fraction(const std::vector<std::string>& fields, CsvTime& time);
+  CsvResult<void> settle_order(const std::vector<std::string>& fields, CsvChannel& channel);
   void settle_unit(const std::string& field);
   void turn_axes(RigidSample& sample, bool is_object) const;
+  bool has_all(const std::vector<std::string>& fields);
   bool find_object(const std::vector<std::string>& fields, std::size_t& index);
   std::string at() const { return "line " + std::to_string(line_); }
   Diagnostic wrong(RuleName rule, std::string remedy) const;
@@ -62,9 +65,10 @@ class CsvRows {
   std::uint64_t line_ = 0;
   std::size_t column_ = 0;  // that was read last
   std::string text_, why_;  // why a value is missing
+  std::string remedy_;      // of a time that cannot be read
   bool has_time_ = false;
   CsvTimeKind kind_ = CsvTimeKind::number;
-  std::int64_t last_time_ = 0, days_ = 0, first_date_ = 0;
+  std::int64_t last_time_ = 0, wrapped_ = 0, first_date_ = 0;
 };
 
 }  // namespace tactus

@@ -2,10 +2,10 @@
 #include <tactus/trace/csv_time.h>
 
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include <tactus/base/text.h>
 
@@ -43,16 +43,33 @@ std::int64_t take_fraction(std::string_view& text) noexcept {
   return value;
 }
 
-/// [ns] "12:00:00.5" at the front.
+/// [ns] "12:00:00.5", "12:00:00:500", "1:00:00.5 PM" or, of minutes, "59:30.5" at the front.
 std::optional<std::int64_t> take_clock(std::string_view& text) noexcept {
   const std::size_t digits = text.size() > 1 && text[1] == ':' ? 1 : 2;
-  const auto hours = take_digits(text, digits);
+  auto hours = take_digits(text, digits);
   if (!hours || !take(text, ":")) return std::nullopt;
-  const auto minutes = take_digits(text, 2);
-  if (!minutes || !take(text, ":")) return std::nullopt;
-  const auto seconds = take_digits(text, 2);
-  if (!seconds || *hours > 24 || *minutes > 59 || *seconds > 60) return std::nullopt;
-  return (*hours * 3600 + *minutes * 60 + *seconds) * kSecond + take_fraction(text);
+  auto minutes = take_digits(text, 2);
+  std::optional<std::int64_t> seconds;
+  if (minutes && !text.empty() && (text[0] == '.' || text[0] == ',')) seconds = std::exchange(minutes, std::exchange(hours, 0));
+  else if (!minutes || !take(text, ":") || !(seconds = take_digits(text, 2))) return std::nullopt;
+  if (*hours > 24 || *minutes > 59 || *seconds > 60) return std::nullopt;
+  std::int64_t fraction = take_fraction(text);
+  if (text.size() >= 4 && text[0] == ':') {
+    text.remove_prefix(1);
+    const auto milliseconds = take_digits(text, 3);
+    if (!milliseconds || (!text.empty() && is_digit(text[0]))) return std::nullopt;
+    fraction = *milliseconds * 1'000'000;
+  }
+  std::string_view half = text;
+  take(half, " ");
+  const bool is_after = half.size() >= 2 && (half[0] == 'P' || half[0] == 'p'),
+             is_half = half.size() >= 2 && (is_after || half[0] == 'A' || half[0] == 'a') && (half[1] == 'M' || half[1] == 'm');
+  if (is_half) {
+    if (*hours < 1 || *hours > 12) return std::nullopt;
+    *hours = *hours % 12 + (is_after ? 12 : 0);
+    text = half.substr(2);
+  }
+  return (*hours * 3600 + *minutes * 60 + *seconds) * kSecond + fraction;
 }
 
 /// [ns] east of UTC; no zone is UTC.
@@ -68,29 +85,82 @@ std::optional<std::int64_t> take_zone(std::string_view& text) noexcept {
   return (is_west ? -1 : 1) * (*hours * 3600 + *minutes * 60) * kSecond;
 }
 
-std::optional<CsvTime> parse_date(std::string_view text) noexcept {
-  const auto year = take_digits(text, 4);
-  if (!year || !take(text, "-/")) return std::nullopt;
-  const auto month = take_digits(text, 2);
-  if (!month || !take(text, "-/")) return std::nullopt;
-  const auto day = take_digits(text, 2);
-  if (!day || *year < 1700 || *year > 2250) return std::nullopt;
-  const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(*year)),
-                                         std::chrono::month(static_cast<unsigned>(*month)),
-                                         std::chrono::day(static_cast<unsigned>(*day))};
-  if (!date.ok()) return std::nullopt;  // no 30 February
+/// One to `most` digits.
+std::optional<std::int64_t> take_number(std::string_view& text, std::size_t most) noexcept {
+  std::size_t count = 0;
+  while (count < most && count < text.size() && is_digit(text[count])) ++count;
+  return count == 0 ? std::nullopt : take_digits(text, count);
+}
+
+/// 1 for "Jan".
+std::optional<std::int64_t> take_month_name(std::string_view& text) noexcept {
+  constexpr std::string_view kNames = "janfebmaraprmayjunjulaugsepoctnovdec";
+  if (text.size() < 3) return std::nullopt;
+  std::array<char, 3> name{};
+  for (std::size_t i = 0; i < 3; ++i) name[i] = static_cast<char>(text[i] | 0x20);
+  const std::size_t at = kNames.find(std::string_view(name.data(), 3));
+  if (at == std::string_view::npos || at % 3 != 0) return std::nullopt;
+  text.remove_prefix(3);
+  return static_cast<std::int64_t>(at / 3 + 1);
+}
+
+/// "2024-05-01", "2024/5/1", "1.5.2024", "13/05/2024", "01-May-2024" at the front.
+std::optional<std::chrono::year_month_day> take_date(std::string_view& text, DateOrder order) noexcept {
+  const bool begins_with_year = text.find_first_not_of("0123456789") == 4;
+  const auto first = take_number(text, 4);
+  if (!first || text.empty()) return std::nullopt;
+  const char mark = text[0];
+  if (!take(text, "-/.")) return std::nullopt;
+  const auto name = take_month_name(text);
+  const auto second = name ? name : take_number(text, 2);
+  if (!second || text.empty() || text[0] != mark) return std::nullopt;
+  text.remove_prefix(1);
+  const auto third = take_number(text, 4);
+  if (!third) return std::nullopt;
+  std::int64_t year = *first, month = *second, day = *third;
+  if (!begins_with_year) {
+    year = *third < 100 ? *third + 2000 : *third;
+    day = *first;
+    if (mark != '.' && !name) {  // 05/06/2024
+      const bool is_open = *first <= 12 && *second <= 12 && *first != *second;
+      if (is_open && order == DateOrder::by_digits) return std::nullopt;
+      const bool is_month_first = *second > 12 || (is_open && order == DateOrder::mdy);
+      if (is_month_first) month = *first, day = *second;
+    }
+  }
+  if (year < 1700 || year > 2250 || month > 12 || day > 31) return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(year)),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  return date.ok() ? std::optional(date) : std::nullopt;  // no 30 February
+}
+
+std::optional<CsvTime> parse_date(std::string_view text, DateOrder order) noexcept {
+  const auto date = take_date(text, order);
+  if (!date) return std::nullopt;
+  take(text, ",");
   if (!take(text, "Tt _")) return std::nullopt;
   const auto clock = take_clock(text);
   if (!clock) return std::nullopt;
   if (!text.empty() && text[0] == ' ') text.remove_prefix(1);
   const auto zone = take_zone(text);
   if (!zone || !text.empty()) return std::nullopt;
-  return CsvTime{std::chrono::nanoseconds(std::chrono::sys_days(date).time_since_epoch()).count() + *clock - *zone,
+  return CsvTime{std::chrono::nanoseconds(std::chrono::sys_days(*date).time_since_epoch()).count() + *clock - *zone,
                  CsvTimeKind::date};
 }
 
+/// Days of 1970 in the count of Excel or MATLAB that this number can be of; 0: of none.
+std::int64_t epoch_of_days(std::string_view text) noexcept {
+  constexpr std::int64_t kExcel = 25569, kMatlab = 719529;
+  const auto days = parse_number<double>(text);
+  if (!days) return 0;
+  if (*days > kMatlab && *days < kMatlab + 50000) return kMatlab;
+  return *days > kExcel && *days < kExcel + 50000 ? kExcel : 0;
+}
+
 /// Digits with at most one point, exactly; nothing: not of that form, or too large.
-std::optional<std::int64_t> exact_decimal(std::string_view text, std::int64_t unit) noexcept {
+/// in  epoch  [units] is subtracted
+std::optional<std::int64_t> exact_decimal(std::string_view text, std::int64_t unit, std::int64_t epoch) noexcept {
   const bool is_negative = text.starts_with('-');
   if (is_negative || text.starts_with('+')) text.remove_prefix(1);
   constexpr std::size_t kMost = 19;
@@ -111,23 +181,26 @@ std::optional<std::int64_t> exact_decimal(std::string_view text, std::int64_t un
     rest = 10 * rest + (text[at] - '0');
     weight *= 10;
   }
-  value += (rest * unit + weight / 2) / weight;
+  value += (rest * unit + weight / 2) / weight - Wide{epoch} * unit;
   if (value > INT64_MAX / 2) return std::nullopt;
   return static_cast<std::int64_t>(is_negative ? -value : value);
 }
 
 }  // namespace
 
-std::optional<CsvTime> parse_csv_time(std::string_view text, std::int64_t unit) noexcept {
-  if (const auto exact = exact_decimal(text, unit)) return CsvTime{*exact};
-  if (text.size() >= 19 && (text[4] == '-' || text[4] == '/')) return parse_date(text);
+std::optional<CsvTime> parse_csv_time(std::string_view text, std::int64_t unit, DateOrder order) noexcept {
+  const std::int64_t epoch = unit == kDayUnit ? epoch_of_days(text) : 0;
+  if (const auto exact = exact_decimal(text, unit, epoch))
+    return CsvTime{*exact, epoch == 0 ? CsvTimeKind::number : CsvTimeKind::date};
   if (text.find(':') != std::string_view::npos) {
+    if (const auto date = parse_date(text, order)) return date;
     const auto clock = take_clock(text);
     return clock && text.empty() ? std::optional(CsvTime{*clock, CsvTimeKind::clock}) : std::nullopt;
   }
   const auto number = parse_number<double>(text);  // with an exponent
-  if (!number || !(std::abs(*number) * static_cast<double>(unit) < 4.6e18)) return std::nullopt;
-  return CsvTime{std::llround(*number * static_cast<double>(unit))};
+  if (!number || !(std::abs(*number - static_cast<double>(epoch)) * static_cast<double>(unit) < 4.6e18)) return std::nullopt;
+  return CsvTime{std::llround((*number - static_cast<double>(epoch)) * static_cast<double>(unit)),
+                 epoch == 0 ? CsvTimeKind::number : CsvTimeKind::date};
 }
 
 std::optional<std::int64_t> unit_of_epoch(std::string_view text) noexcept {
@@ -149,6 +222,12 @@ std::string date_text(std::int64_t nanoseconds) {
   std::snprintf(text.data(), text.size(), "%04d-%02u-%02u %02d:%02d:%02d UTC", static_cast<int>(date.year()),
                 static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), static_cast<int>(clock.hours().count()),
                 static_cast<int>(clock.minutes().count()), static_cast<int>(clock.seconds().count()));
+  return text.data();
+}
+
+std::string number_text(double value, const char* form) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), form, value);
   return text.data();
 }
 

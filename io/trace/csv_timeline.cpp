@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <map>
 #include <numbers>
 
 #include <tactus/base/rule.h>
@@ -13,39 +11,16 @@
 #include <tactus/trace/differences.h>
 #include <tactus/trace/interpolation.h>
 #include <tactus/trace/messages.h>
-#include <tactus/trace/resampler.h>
 
 namespace tactus {
 namespace {
 
 constexpr std::size_t kWindow = 64;            // rows that may be out of order
-constexpr std::size_t kRowsForRate = 4096;     // looked at before the rate is settled
+constexpr std::size_t kRowsForRate = 4096;     // looked at before the pace is settled
 constexpr double kOnGrid = 0.1, kSame = 1e-3;  // [ticks]
-constexpr double kLowestRate = 10, kDefaultGap = 0.1, kGapPeriods = 3;
+constexpr double kDefaultGap = 0.1, kGapPeriods = 3;
 
-std::string text_of(double value, const char* form = "%.6g") {
-  char text[64];
-  std::snprintf(text, sizeof text, form, value);
-  return text;
-}
-
-std::string seconds_text(std::int64_t ns) { return text_of(static_cast<double>(ns) / 1e9, "%.9g") + " s"; }
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// 1000 for 998.7: the roundest number as near as `tolerance` (a share), else the next whole one.
-std::uint32_t round_rate(double rate, double tolerance) {
-  for (int digits = static_cast<int>(std::log10(std::max(rate, 1.0))); digits >= 0; --digits) {
-    const double step = std::pow(10, digits);
-    const double rounded = std::round(rate / step) * step;
-    if (std::abs(rounded - rate) <= tolerance * rate && rounded >= 1) return static_cast<std::uint32_t>(rounded);
-  }
-  return static_cast<std::uint32_t>(std::round(rate));
-}
+std::string seconds_text(std::int64_t ns) { return number_text(static_cast<double>(ns) / 1e9, "%.9g") + " s"; }
 
 }  // namespace
 
@@ -59,18 +34,16 @@ Diagnostic CsvTimeline::mistake(Errc code, RuleName rule, std::uint64_t line, st
 CsvResult<void> CsvTimeline::add(CsvRow row) {
   budget_.earn(row.bytes);
   if (!plan_.time) return place(std::move(row));
+  falls_ = !last_time_ || row.time >= *last_time_ ? 0 : falls_ + 1;
+  if (mapping_.restarts) mark_restart(row);
+  last_time_ = row.time;
   if (!window_.empty() && window_.back().segment != row.segment) {
     while (!window_.empty()) TACTUS_CHECK(release());
     released_.reset();
   } else if (window_.empty() && released_ && has_segment_ && row.segment != segment_) {
     released_.reset();
   }
-  if (released_ && row.time < *released_) {
-    return tl::unexpected(mistake(
-        Errc::invalid, "R-CSV-5", row.line,
-        "time " + seconds_text(row.time) + " after " + seconds_text(*released_) + " in line " + std::to_string(released_line_),
-        "Name the column that separates the recordings (--segment COLUMN), or sort the rows by time."));
-  }
+  if (released_ && row.time < *released_) return tl::unexpected(out_of_order(row));
   if (window_.empty() || window_.back().time <= row.time) {
     window_.push_back(std::move(row));
   } else {
@@ -84,6 +57,30 @@ CsvResult<void> CsvTimeline::add(CsvRow row) {
     window_.insert(at, std::move(row));
   }
   return window_.size() > kWindow ? release() : CsvResult<void>();
+}
+
+/// Rows that cross are a few: a time ahead of all in the window begins another recording.
+void CsvTimeline::mark_restart(CsvRow& row) {
+  const std::int64_t earliest = !window_.empty() ? window_.front().time : released_.value_or(row.time);
+  const bool is_own_segment = !window_.empty() && window_.back().segment != row.segment + restart_suffix();
+  if (row.time < earliest && !is_own_segment) {
+    ++restarts_;
+    plan_.notes.add("", "the time falls: another segment begins", "line " + std::to_string(row.line));
+  }
+  row.segment += restart_suffix();
+}
+
+Diagnostic CsvTimeline::out_of_order(const CsvRow& row) const {
+  const bool is_reversed = falls_ >= kWindow;
+  return mistake(
+      Errc::invalid, "R-CSV-5", row.line,
+      is_reversed ? "times fall in " + std::to_string(falls_ + 1) + " rows one after the other"
+                  : "time " + seconds_text(row.time) + " after " + seconds_text(*released_) + " in line " +
+                        std::to_string(released_line_),
+      is_reversed
+          ? "Turn the rows around, as by tac."
+          : "Name the column that separates the recordings (--segment COLUMN), give --restarts if another recording begins "
+            "there, or sort the rows by time.");
 }
 
 /// The first row of the window is in order.
@@ -117,8 +114,8 @@ CsvResult<CsvImport> CsvTimeline::finish() {
   const auto tell = [&](std::uint64_t count, const std::string& what, const std::string& detail) {
     if (count > 0) plan_.notes.add("", what + ": " + std::to_string(count) + detail);
   };
-  const std::string gap = text_of(gap_ * period) + " s (--gap)";
-  tell(made_, "samples interpolated", ", over at most " + text_of(largest_gap_ * period) + " s");
+  const std::string gap = number_text(gap_ * period) + " s (--gap)";
+  tell(made_, "samples interpolated", ", over at most " + number_text(largest_gap_ * period) + " s");
   tell(left_out_, "ticks left out", ": nothing was recorded for more than " + gap);
   tell(rested_, "samples held", ", as others of the table go on: none for more than " + gap);
   tell(repeated_, "rows with the time, or the tick, of a row before", "; the last of each counts");
@@ -126,75 +123,15 @@ CsvResult<CsvImport> CsvTimeline::finish() {
   return done_;
 }
 
-/// Two estimates: the median of the gaps, and the count over the length without pauses.
+/// Without a column of time the mapping tells the rate.
 CsvResult<void> CsvTimeline::find_rate() {
   plan_.info.tick_rate = mapping_.tick_rate;
   if (!plan_.time)
     return mapping_.tick_rate > 0 ? CsvResult<void>() : tl::unexpected(mistake(Errc::invalid_argument, "R-CSV-7", 1, ""));
-  std::map<std::uint32_t, std::size_t> counts;  // of the objects of a long table
-  for (const CsvRow& row : waiting_) ++counts[row.values[0].channel];
-  const auto busiest = std::ranges::max_element(counts, {}, [](const auto& c) { return c.second; })->first;
-  std::vector<double> gaps;  // [s]
-  const CsvRow* before = nullptr;
-  for (const CsvRow& row : waiting_) {
-    if (row.values[0].channel != busiest) continue;
-    if (before != nullptr && before->segment == row.segment && row.time > before->time)
-      gaps.push_back(static_cast<double>(row.time - before->time) / 1e9);
-    before = &row;
-  }
-  if (gaps.empty() && mapping_.tick_rate == 0)
-    return tl::unexpected(mistake(Errc::invalid_argument, "R-CSV-7", waiting_[0].line, ""));
-  const double median = gaps.empty() ? 1.0 / mapping_.tick_rate : median_of(gaps);
-  double length = 0, count = 0;
-  for (const double gap : gaps) length += gap;
-  const double pause = 20 * length / static_cast<double>(std::max<std::size_t>(gaps.size(), 1));
-  length = 0;
-  for (const double gap : gaps)
-    if (gap <= pause) length += gap, ++count;
-  const double by_median = 1 / median, by_count = gaps.empty() ? by_median : count / length;
-  if (!(by_median <= 4e9) || !(by_count <= 1.5 * kMaxTickRate))
-    return tl::unexpected(mistake(Errc::invalid_argument, "R-CSV-7", waiting_[0].line, "rows " + text_of(median) + " s apart",
-                                  "Give --time-unit, or --tick-rate."));
-  const auto is_off = [&](double rate) {
-    std::uint64_t off = 0, all = 0;
-    for (const CsvRow& row : waiting_) {
-      if (row.values[0].channel != busiest) continue;
-      if (all++ == 0 || row.segment != before->segment) before = &row;
-      const double at = static_cast<double>(row.time - before->time) / 1e9 * rate;
-      off += std::abs(at - std::round(at)) > kOnGrid;
-    }
-    return off > 0;
-  };
-  const double rounded = std::max(1.0, std::round(by_median));
-  const bool agree = std::abs(by_median - by_count) <= 0.1 * by_count;
-  const bool is_sparse = by_count < 0.5 * rounded;
-  if (mapping_.tick_rate == 0) {
-    const bool takes_median = rounded <= kMaxTickRate && !is_off(rounded) && !is_sparse;
-    const double exact = takes_median ? rounded : by_count;
-    plan_.info.tick_rate =
-        takes_median ? static_cast<std::uint32_t>(rounded) : std::max(1u, round_rate(exact, 1.0 / std::max(count, 1.0) + 5e-4));
-    if (!agree && !gaps.empty())
-      plan_.notes.add("", "the median gap says " + text_of(by_median, "%.4g") + " Hz, the number of rows over their time " +
-                              text_of(by_count, "%.4g") + " Hz: " + std::to_string(plan_.info.tick_rate) +
-                              " Hz is taken; --tick-rate says otherwise");
-    const bool is_told = plan_.time_is_told;
-    if (exact < kLowestRate && !is_told) {
-      return tl::unexpected(mistake(Errc::invalid, "R-CSV-11", waiting_[0].line,
-                                    "rows " + text_of(median) + " s apart, " + text_of(exact, "%.4g") + " Hz",
-                                    "Say --time-unit ms (us, ns) if the times are no seconds, --time-unit s or --tick-rate " +
-                                        std::to_string(plan_.info.tick_rate) + " if they are."));
-    }
-    if (exact < 0.99 && plan_.time_is_told)
-      return tl::unexpected(mistake(Errc::invalid_argument, "R-CSV-7", waiting_[0].line, text_of(exact, "%.4g") + " Hz",
-                                    "Give --tick-rate HZ: it is 1 at least."));
-  }
-  if (plan_.info.tick_rate > kMaxTickRate)
-    return tl::unexpected(
-        mistake(Errc::invalid_argument, "R-CSV-7", waiting_[0].line, "", "Give --tick-rate HZ, at most 1000000."));
-  resamples_ = mapping_.resample && is_off(plan_.info.tick_rate);
-  if (resamples_)
-    plan_.notes.add("", "times lie on no grid: resampled at " + std::to_string(plan_.info.tick_rate) +
-                            " Hz (--no-resample refuses such tables)");
+  TACTUS_TRY(const CsvPace pace, find_pace(waiting_, mapping_, plan_));
+  plan_.info.tick_rate = pace.tick_rate;
+  resamples_ = pace.is_off_grid;
+  if (pace.period > 0) even_.emplace(pace);
   return {};
 }
 
@@ -202,19 +139,20 @@ CsvResult<void> CsvTimeline::start() {
   TACTUS_CHECK(find_rate());
   const double rate = plan_.info.tick_rate;
   gap_ = mapping_.gap > 0 ? mapping_.gap * rate : std::max(kDefaultGap * rate, kGapPeriods);
+  std::size_t subjects = 1;
   if (plan_.object) {
     const std::vector<std::string>& names = long_objects_.empty() ? rows_.objects() : long_objects_;
     const TraceInfo one = plan_.info;
     plan_.info.objects.clear();
     plan_.info.users.clear();
+    subjects = names.size();
     for (const std::string& name : names) {
       for (TraceObject object : one.objects) object.name = name, plan_.info.objects.push_back(object);
       for (TraceUser user : one.users) user.name = name, plan_.info.users.push_back(user);
     }
-    channels_.resize(names.size() * plan_.channels.size());
-  } else {
-    channels_.resize(plan_.channels.size());
   }
+  channels_.assign(subjects * plan_.channels.size(), SampleTrack<Instant>({.gap = gap_, .same = kSame, .tick = 1}));
+  TACTUS_CHECK(take_contacts());
   auto writer = TraceWriter::create(out_path_, plan_.info);
   if (!writer) return tl::unexpected(Diagnostic{.error = writer.error(), .line = 1});
   writer_ = std::move(*writer);
@@ -225,6 +163,20 @@ CsvResult<void> CsvTimeline::start() {
   for (CsvRow& row : waiting_) TACTUS_CHECK(place(std::move(row)));
   waiting_ = {};
   return {};
+}
+
+CsvResult<void> CsvTimeline::take_contacts() {
+  auto contacts = ContactDeclarations::create(plan_.info, mapping_.contacts);
+  if (contacts) return contacts_ = *std::move(contacts), CsvResult<void>();
+  const auto names_of = [](const auto& list) {
+    std::string names;
+    for (const auto& of : list) names += (names.empty() ? "" : ", ") + shown(of.name);
+    return names.empty() ? "none" : names;
+  };
+  return tl::unexpected(Diagnostic{.error = contacts.error(),
+                                   .detail = "contact",
+                                   .remedy = "Declare one contact for a user. Users of this table: " +
+                                             names_of(plan_.info.users) + "; objects: " + names_of(plan_.info.objects) + "."});
 }
 
 CsvTimeline::Instant CsvTimeline::instant_of(std::int64_t time) const noexcept {
@@ -258,6 +210,7 @@ CsvResult<void> CsvTimeline::place(CsvRow row) {
     if (!waiting_.empty() || plan_.time) return tl::unexpected(mistake(Errc::internal, "R-CSV-7", row.line, ""));
     TACTUS_CHECK(start());
   }
+  if (even_) row.time = even_->time_of(row, row.values[0].channel / plan_.channels.size());
   if (!has_segment_ || row.segment != segment_) TACTUS_CHECK(begin_segment(row));
   Instant at = plan_.time ? instant_of(row.time) : Instant{row_number_++, 0};
   const std::int64_t most = kMaxSeconds * plan_.info.tick_rate;
@@ -276,9 +229,7 @@ CsvResult<void> CsvTimeline::place(CsvRow row) {
     if (value.channel >= channels_.size())
       return tl::unexpected(mistake(Errc::malformed, "R-CSV-2", row.line, "an object that the first rows lack",
                                     "Give the table as a file, not by a pipe."));
-    auto& queue = channels_[value.channel];
-    if (!queue.empty() && at.since(queue.back().at) < kSame) queue.back() = {at, value.sample};
-    else queue.push_back({at, value.sample});
+    channels_[value.channel].add({at, value.sample});
   }
   return emit(false);
 }
@@ -315,8 +266,9 @@ bool CsvTimeline::is_ready(std::int64_t tick) const {
   const Instant at{tick, 0};
   if (now_.since(at) < kSame) return false;
   if (now_.since(at) > gap_) return true;
-  return std::ranges::all_of(channels_, [&](const auto& queue) {
-    return !queue.empty() && (queue.back().at.since(at) > -kSame || now_.since(queue.back().at) > gap_);
+  return std::ranges::all_of(channels_, [&](const SampleTrack<Instant>& track) {
+    const auto* newest = track.newest();
+    return newest != nullptr && (newest->at.since(at) > -kSame || now_.since(newest->at) > gap_);
   });
 }
 
@@ -331,27 +283,17 @@ CsvResult<void> CsvTimeline::emit(bool is_end) {
 
 /// out  false: the channel has no sample within the gap; then `out` is the nearest one, if there is any
 bool CsvTimeline::sample_at(std::size_t channel, std::int64_t tick, RigidSample& out) {
-  auto& queue = channels_[channel];
-  const Instant at{tick, 0};
-  while (queue.size() > 1 && queue[1].at.since(at) < kSame) queue.pop_front();
-  if (queue.empty()) return false;
-  const Sample& a = queue.front();
-  out = a.value;
-  const double since = at.since(a.at);
-  if (std::abs(since) < kSame) return true;
-  if (since < 0 || queue.size() == 1) {
-    const bool is_border = since < 0 || ended_;  // else the next sample is too far away
-    if (!is_border || std::abs(since) > gap_) return false;
-    out.velocity = out.angular_velocity = {};
-    ++made_;
-    return true;
-  }
-  const double apart = queue[1].at.since(a.at);
-  if (apart > gap_ + kSame) return false;
-  out = mixed(a.value, queue[1].value, since / apart);
-  largest_gap_ = std::max(largest_gap_, apart);
-  ++made_;
-  return true;
+  SampleTrack<Instant>& track = channels_[channel];
+  track.move_to({tick, 0});
+  if (track.is_empty()) return false;
+  out = track.value();
+  using Place = SampleTrack<Instant>::Place;
+  if (track.place() == Place::on) return true;
+  if (track.place() == Place::between) largest_gap_ = std::max(largest_gap_, track.span());
+  const bool is_border = track.place() == Place::before || (ended_ && track.next() == nullptr);  // else the next is too far away
+  const bool is_known = track.is_known() || (is_border && track.is_held());
+  made_ += is_known;
+  return is_known;
 }
 
 CsvResult<void> CsvTimeline::write(std::int64_t tick) {
@@ -365,24 +307,29 @@ CsvResult<void> CsvTimeline::write(std::int64_t tick) {
     RigidSample sample;
     const bool is_known = sample_at(i, tick, sample);
     known += is_known;
-    if (!is_known && !channels_[i].empty()) sample.velocity = sample.angular_velocity = {};
     if (plan.kind == CsvChannel::Kind::object) {
-      if (is_known || !channels_[i].empty() || begins_) frame_.objects[index] = sample;
+      if (!channels_[i].is_empty() || begins_) frame_.objects[index] = sample;
       continue;
     }
     UserSample& user = frame_.users[index];
-    if (plan.kind == CsvChannel::Kind::force) user.force = user.server_force = is_known ? sample.pose.position : Vec3{};
-    else if (is_known || !channels_[i].empty()) user.device.position = user.contact.device = sample.pose.position;
+    if (plan.kind == CsvChannel::Kind::force) user.force = user.server_force = channels_[i].vector();
+    else if (!channels_[i].is_empty()) {
+      user.device.position = sample.pose.position;
+      user.device.orientation = sample.pose.rotation;
+    }
   }
   if (known == 0) return ++left_out_, CsvResult<void>();
   rested_ += channels_.size() - known;
   if (done_.ticks.count() == 0) shift_ = -tick;
   frame_.tick = base_ + shift_ + tick;
   if (frame_.tick < 0) return tl::unexpected(mistake(Errc::invalid, "R-CSV-5", 0, ""));
+  for (UserSample& user : frame_.users) user.contact = {}, user.contact.device = user.device.position;
+  contacts_.apply(frame_);
   derive_motion(frame_, begins_);
   if (const auto written = writer_->write(frame_); !written)
-    return tl::unexpected(Diagnostic{
-        .error = written.error(), .detail = "time " + text_of(static_cast<double>(frame_.tick) / plan_.info.tick_rate) + " s"});
+    return tl::unexpected(
+        Diagnostic{.error = written.error(),
+                   .detail = "time " + number_text(static_cast<double>(frame_.tick) / plan_.info.tick_rate) + " s"});
   done_.ticks.add(frame_.tick);
   if (!begins_) check_angular_velocity(frame_);
   if (begins_) ++done_.segments;

@@ -11,8 +11,10 @@
 #include <string>
 #include <vector>
 
+#include <tactus/trace/csv_pace.h>
 #include <tactus/trace/csv_rows.h>
 #include <tactus/trace/input_budget.h>
+#include <tactus/trace/sample_track.h>
 
 namespace tactus {
 
@@ -29,16 +31,17 @@ class CsvTimeline {
     std::int64_t tick = 0;
     double off = 0;  // -0.5 .. 0.5
     double since(const Instant& other) const noexcept { return static_cast<double>(tick - other.tick) + (off - other.off); }
-  };
-  struct Sample {
-    Instant at;
-    RigidSample value;
+    friend double since(const Instant& time, const Instant& other) noexcept { return time.since(other); }
   };
 
+  void mark_restart(CsvRow& row);
+  std::string restart_suffix() const { return restarts_ == 0 ? "" : '#' + std::to_string(restarts_); }
+  Diagnostic out_of_order(const CsvRow& row) const;
   CsvResult<void> release();
   CsvResult<void> place(CsvRow row);
   CsvResult<void> start();
   CsvResult<void> find_rate();
+  CsvResult<void> take_contacts();
   CsvResult<void> begin_segment(const CsvRow& row);
   CsvResult<void> end_segment();
   CsvResult<void> ask_for_ticks(const CsvRow& row, const Instant& at);
@@ -56,17 +59,20 @@ class CsvTimeline {
   const CsvRows& rows_;
   std::string out_path_;
   std::vector<std::string> long_objects_;
-  std::deque<CsvRow> window_;    // in order
-  std::vector<CsvRow> waiting_;  // until the rate is known
+  std::deque<CsvRow> window_;      // in order
+  std::vector<CsvRow> waiting_;    // until the rate is known
+  std::optional<EvenTimes> even_;  // of rows in groups
+  ContactDeclarations contacts_;
   std::optional<TraceWriter> writer_;
   std::optional<std::int64_t> released_;  // [ns] time of the last row that left the window
-  std::uint64_t released_line_ = 0;
+  std::uint64_t released_line_ = 0, restarts_ = 0, falls_ = 0;
+  std::optional<std::int64_t> last_time_;  // of the row before
   std::string segment_;
   bool has_segment_ = false, resamples_ = false, begins_ = true, ended_ = false;
   std::int64_t segment_time_ = 0, base_ = 0, shift_ = 0, next_tick_ = 0, row_number_ = 0;
   double gap_ = 0;  // [ticks]
   Instant now_;     // of the newest row
-  std::vector<std::deque<Sample>> channels_;
+  std::vector<SampleTrack<Instant>> channels_;
   std::deque<std::int64_t> ticks_;  // asked for, of this segment
   TraceFrame frame_, before_;
   InputBudget budget_;

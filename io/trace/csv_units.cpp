@@ -64,11 +64,23 @@ constexpr std::array kUnits{CsvUnit{"m", length, 1},
                             CsvUnit{"nanos", time, 1e-9},
                             CsvUnit{"nanosecond", time, 1e-9},
                             CsvUnit{"nanoseconds", time, 1e-9},
+                            CsvUnit{"nanosec", time, 1e-9},
+                            CsvUnit{"nanosecs", time, 1e-9},
+                            CsvUnit{"microsec", time, 1e-6},
+                            CsvUnit{"microsecs", time, 1e-6},
+                            CsvUnit{"millisec", time, 1e-3},
+                            CsvUnit{"millisecs", time, 1e-3},
+                            CsvUnit{"day", time, 86400},
+                            CsvUnit{"days", time, 86400},
                             CsvUnit{"minutes", time, 60},
                             CsvUnit{"hours", time, 3600},
                             CsvUnit{"rad", angle, 1},
                             CsvUnit{"deg", angle, kDegree},
                             CsvUnit{"\xC2\xB0", angle, kDegree},
+                            CsvUnit{"\xB0", angle, kDegree},  // Latin-1
+                            CsvUnit{"\xB0/s", angular_speed, kDegree},
+                            CsvUnit{"\xB5m", length, 1e-6},
+                            CsvUnit{"\xB5s", time, 1e-6},
                             CsvUnit{"degree", angle, kDegree},
                             CsvUnit{"degrees", angle, kDegree},
                             CsvUnit{"radian", angle, 1},
@@ -120,7 +132,7 @@ std::size_t opening(std::string_view name) noexcept {
 /// In brackets, but about something else: an index, an axis, nothing.
 bool is_no_unit(std::string_view text) noexcept {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  return text.empty() || text == "-" || text.size() == 1 || std::ranges::all_of(text, is_digit);
+  return text.empty() || text == "-" || (text.size() == 1 && (text[0] & 0x80) == 0) || std::ranges::all_of(text, is_digit);
 }
 
 std::optional<CsvUnit> of_dimension(std::string_view text, CsvDimension dimension) noexcept {

@@ -42,7 +42,7 @@ void ContactDeclarations::apply(TraceFrame& frame) const noexcept {
     UserSample& user = frame.users[of.user];
     if (user.contact.kind != ContactKind::none) continue;
     const Pose& pose = frame.objects[of.object].pose;
-    if (of.at == ForcePoint::origin) user.device.position = pose.position;
+    if (of.at == ForcePoint::origin) user.device.position = user.contact.device = pose.position;
     const Vec3& force = of.is_of_server ? user.server_force : user.force;
     user.contact = contact_of_force(pose, user.device.position, force, of.stiffness, of.kind, of.object);
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <tactus/base/geometry.h>
+#include <tactus/rigid/rigid_state.h>
 
 namespace tactus {
 
@@ -29,6 +30,11 @@ inline Quat mixed(const Quat& a, const Quat& b, double share) noexcept {
 
 inline Pose mixed(const Pose& a, const Pose& b, double share) noexcept {
   return {mixed(a.position, b.position, share), mixed(a.rotation, b.rotation, share)};
+}
+
+inline RigidSample mixed(const RigidSample& a, const RigidSample& b, double share) noexcept {
+  return {mixed(a.pose, b.pose, share), mixed(a.velocity, b.velocity, share),
+          mixed(a.angular_velocity, b.angular_velocity, share)};
 }
 
 }  // namespace tactus

@@ -5,6 +5,7 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/rule.h>
+#include <tactus/trace/block_crc.h>
 
 namespace tactus::mcap {
 namespace {
@@ -178,7 +179,7 @@ Result<void> Writer::end_chunk() {
   out.u64(chunk_start_time_);
   out.u64(chunk_end_time_);
   out.u64(chunk_.size());
-  out.u32(crc32(chunk_));
+  out.u32(block_crc(chunk_));
   put_text(out, stored.compression);
   out.u64(stored.records.size());
   out.bytes(stored.records);
@@ -309,7 +310,7 @@ Result<void> Writer::write_bytes(std::span<const std::uint8_t> bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) return fail(Errc::io, "R-TRC-1", 8 * position_);
   position_ += bytes.size();
   budget_.earn(bytes.size());
-  crc_ = crc32(bytes, crc_);
+  crc_ = block_crc(bytes, crc_);
   return {};
 }
 

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What a reader of foreign files decided, because the file leaves it open or says it badly: which clock it took, what it interpolated, which
-/// samples are missing, what it left out. Every decision that changes a number is told; nothing is decided in silence.
+/// samples are missing, what it left out, what it lost to damage. Every decision that changes a number is told; nothing is decided in
+/// silence.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include <tactus/base/result.h>
 
 namespace tactus {
 
@@ -17,6 +21,27 @@ struct ReadNote {
   std::string what;         ///< a sentence without a full stop: "not a number; held from the sample before"
   std::string first;        ///< where it was seen first: "at 3.021 s", "line 12"; may be empty
   std::uint64_t count = 1;  ///< how often
+};
+
+enum class OnDamage : std::uint8_t {
+  refuse,
+  skip
+};  ///< skip: what is damaged is left out, as is a tick that lacks something then
+
+/// What of a recording was left out because it is damaged.
+struct ReadLoss {
+  std::string file{};                            ///< of a recording of several files
+  Error cause{};                                 ///< its offset is that of the record
+  std::uint64_t bytes = 0;                       ///< of the file; 0: not known
+  std::optional<std::uint64_t> from{}, until{};  ///< [ns] log times of what was lost, if something tells them
+};
+
+/// Sees how far a long look at a recording has come.
+class ReadWatcher {
+ public:
+  virtual ~ReadWatcher() = default;
+  /// in  bytes  read;  all  of all files
+  virtual void on_read(std::uint64_t bytes, std::uint64_t all) = 0;
 };
 
 /// Notes of one recording, each place and sentence once.

@@ -9,12 +9,6 @@
 
 namespace tactus {
 
-RigidSample mixed(const RigidSample& a, const RigidSample& b, double share) noexcept {
-  return {{mixed(a.pose.position, b.pose.position, share), mixed(a.pose.rotation, b.pose.rotation, share)},
-          mixed(a.velocity, b.velocity, share),
-          mixed(a.angular_velocity, b.angular_velocity, share)};
-}
-
 namespace {
 
 UserSample mixed(const UserSample& a, const UserSample& b, double share) {

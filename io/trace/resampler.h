@@ -11,9 +11,6 @@
 
 namespace tactus {
 
-/// As interpolation.h, for all that a sample holds.
-RigidSample mixed(const RigidSample& a, const RigidSample& b, double share) noexcept;
-
 class Resampler {
  public:
   /// in   tick_rate  wanted [1/s], 1 .. kMaxTickRate;  gap  [s] no frames are made between two that are farther apart

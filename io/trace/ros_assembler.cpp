@@ -10,7 +10,6 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/base/text.h>
-#include <tactus/trace/differences.h>
 #include <tactus/trace/frame_assembler.h>
 #include <tactus/trace/ros_frames.h>
 #include <tactus/trace/ros_survey.h>
@@ -86,25 +85,18 @@ class RosAssembler final : public FrameAssembler {
     std::uint32_t source = 0;
     std::optional<std::size_t> beside{};  // object where the force acts, if its frame does not tell
   };
-  /// A frame without velocities, and what they follow from.
-  struct Shown {
-    TraceFrame frame;
-    std::vector<std::uint64_t> chains;         // of each object: differs where it jumped
-    std::vector<std::optional<Twist>> twists;  // told
-  };
   Result<void> look(mcap::Reader& mcap, std::size_t most, bool keeps);
   std::vector<std::string> find_objects();
+  void take_twist(Object& object, std::uint32_t twist);
   void tell_unknown(const mcap::Reader& mcap, const std::vector<std::string>& left_out);
   void find_users();
   std::string free_name(std::string name, const std::string& of, std::set<std::string>& names);
   Result<std::optional<RosSample>> read(mcap::Reader& mcap);
   Result<bool> take(mcap::Reader& mcap);
-  Result<bool> show(mcap::Reader& mcap, Shown& out);
   Result<bool> skip(mcap::Reader& mcap, std::uint64_t time);
-  void fill(Shown& out);
-  void place(std::size_t object, Shown& out);
-  void press(std::size_t user, Shown& out);
-  void set_velocities(const Shown* before, const Shown* after);
+  void fill(TraceFrame& out);
+  RigidSample place(const Object& object);
+  UserSample press(const User& user, const TraceFrame& out);
 
   ReadOptions options_;
   TraceInfo info_;
@@ -114,16 +106,13 @@ class RosAssembler final : public FrameAssembler {
   RosSurvey survey_;
   std::deque<RosSample> kept_;  // of a pipe's look-ahead
   RosOrder order_;
-  std::uint64_t newest_ = 0, released_ = 0, window_ = 0, reach_ = 0;
+  std::uint64_t newest_ = 0, released_ = 0, window_ = 0;
   bool ended_ = false, is_whole_ = true;
   std::vector<RosTrack> tracks_;  // per source
   std::optional<RosFrames> frames_;
   std::vector<Object> objects_;
   std::vector<User> users_;
   std::int64_t tick_ = 0;
-  Shown before_, now_, after_;
-  int held_ = -1;  // -1: nothing was shown yet; 0: all was; 1: now_ waits for its velocities
-  bool has_before_ = false;
 };
 
 Result<void> RosAssembler::look(mcap::Reader& mcap, std::size_t most, bool keeps) {
@@ -159,12 +148,12 @@ tl::expected<void, Diagnostic> RosAssembler::start(mcap::Reader& mcap, mcap::Ite
   if (ahead) samples_.restart(first);
   window_ = is_whole_ ? survey_.disorder() : 2 * survey_.disorder() + kPipeSlack;
   const auto& sources = samples_.sources();
+  info_.tick_rate = survey_.tick_rate();
   for (std::uint32_t i = 0; i < sources.size(); ++i) {
-    tracks_.emplace_back(survey_.facts(i).first, survey_.moves(i), survey_.gap(i));
-    if (survey_.moves(i)) reach_ = std::max(reach_, survey_.gap(i));
+    tracks_.emplace_back(survey_.facts(i).first, survey_.moves(i), survey_.moves(i) ? survey_.gap(i) : 0,
+                         1'000'000'000 / info_.tick_rate);
   }
   frames_.emplace(samples_, tracks_, notes_);
-  info_.tick_rate = survey_.tick_rate();
   std::vector<std::string> left_out = find_objects();
   find_users();
   tell_unknown(looked, left_out);
@@ -212,14 +201,23 @@ std::vector<std::string> RosAssembler::find_objects() {
     if (sources[i].kind != Kind::twist || survey_.facts(i).samples == 0) continue;
     if (sources[i].is_odometry) {
       for (Object& object : objects_)
-        if (sources[object.source].kind == Kind::pose && sources[object.source].topic == sources[i].topic) object.twist = i;
+        if (sources[object.source].kind == Kind::pose && sources[object.source].topic == sources[i].topic) take_twist(object, i);
     } else if (const auto found = by_path.find(path_of(sources[i].topic)); found != by_path.end()) {
-      objects_[found->second].twist = i;
+      take_twist(objects_[found->second], i);
     } else {
       notes_.add(sources[i].topic, "no topic of poses is beside it: this twist is ignored");
     }
   }
   return left_out;
+}
+
+/// Many programs leave velocities at 0 that they do not know.
+void RosAssembler::take_twist(Object& object, std::uint32_t twist) {
+  constexpr double kMoved = 0.01, kTurned = 0.02;  // [m], [rad]
+  const SourceFacts& pose = survey_.facts(object.source);
+  const bool is_left_open = survey_.facts(twist).speed == 0 && (pose.moved > kMoved || pose.turned > kTurned);
+  if (!is_left_open) object.twist = twist;
+  else notes_.add(survey_.place_of(twist), "is 0 throughout, though the object moves: velocities follow from the poses");
 }
 
 /// A name that was typed wrong takes or leaves out nothing.
@@ -284,6 +282,7 @@ Result<bool> RosAssembler::take(mcap::Reader& mcap) {
       continue;
     }
     if (sample->fault != RosFault::none) continue;
+    sample->log = survey_.log_of(*sample);
     const std::int64_t added = samples_.sources()[sample->source].is_static ? 0 : survey_.steps().added_at(sample->ordinal);
     const auto time = survey_.clock().time_of(*sample, added);
     if (!time) {
@@ -292,7 +291,7 @@ Result<bool> RosAssembler::take(mcap::Reader& mcap) {
       continue;
     }
     sample->time = *time;
-    if (!survey_.moves(sample->source)) sample->time = std::min(sample->time, survey_.start());
+    if (!survey_.moves(sample->source)) sample->time = std::max(sample->time, released_);
     else newest_ = std::max(newest_, static_cast<std::uint64_t>(static_cast<std::int64_t>(sample->log) + added));
     order_.add(*sample);
     if (survey_.moves(sample->source) && newest_ > window_) order_.reach(newest_ - window_);
@@ -301,17 +300,14 @@ Result<bool> RosAssembler::take(mcap::Reader& mcap) {
 
 // ==== frames ====
 
-Result<bool> RosAssembler::show(mcap::Reader& mcap, Shown& out) {
+Result<bool> RosAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
   while (true) {
     const std::uint64_t since = time_of_tick(tick_, info_.tick_rate), time = survey_.start() + since;
-    while (!ended_ && released_ <= time + reach_) {
-      TACTUS_TRY(const bool more, take(mcap));
-      if (!more) break;
-    }
-    while (ended_) {
-      TACTUS_TRY(const bool more, take(mcap));
-      if (!more) break;
-    }
+    bool more = true;
+    for (const RosTrack& track : tracks_)
+      while (more && !track.is_settled(time, released_)) {
+        TACTUS_TRY(more, take(mcap));
+      }
     const std::uint64_t near = 500'000'000 / info_.tick_rate;
     bool is_covered = false;
     for (RosTrack& track : tracks_) {
@@ -320,11 +316,11 @@ Result<bool> RosAssembler::show(mcap::Reader& mcap, Shown& out) {
     }
     if (is_covered) {
       TACTUS_CHECK(mcap.spend((objects_.size() + users_.size() + 1) * kCostOfObject));
-      fill(out);
+      fill(frame);
       ++tick_;
       return true;
     }
-    TACTUS_TRY(const bool more, skip(mcap, time));
+    TACTUS_TRY(more, skip(mcap, time));
     if (!more) return false;
   }
 }
@@ -333,12 +329,14 @@ Result<bool> RosAssembler::show(mcap::Reader& mcap, Shown& out) {
 Result<bool> RosAssembler::skip(mcap::Reader& mcap, std::uint64_t time) {
   while (true) {
     std::optional<std::uint64_t> next;
-    for (const RosTrack& track : tracks_)
-      if (const auto own = track.moves() ? track.next_time() : std::nullopt; own && (!next || *own < *next)) next = own;
+    std::uint32_t source = 0;  // that goes on first
+    for (std::uint32_t i = 0; i < tracks_.size(); ++i)
+      if (const auto own = tracks_[i].moves() ? tracks_[i].next_time() : std::nullopt; own && (!next || *own < *next))
+        next = own, source = i;
     if (next) {
       const std::uint64_t since = *next - survey_.start();
       if (since / 1'000'000'000 >= static_cast<std::uint64_t>(kMaxSeconds) - 1) {
-        detail_ = "a sample is " + std::to_string(since / 1'000'000'000) + " s behind the first, more than a trace can hold";
+        detail_ = survey_.place_of(source) + ", at " + std::to_string(since / 1'000'000'000) + " s: more than a trace can hold";
         return fail(Errc::invalid, "R-TRC-15", 8 * mcap.offset());
       }
       tick_ = std::max(tick_ + 1, tick_of_time(since, info_.tick_rate));
@@ -350,88 +348,42 @@ Result<bool> RosAssembler::skip(mcap::Reader& mcap, std::uint64_t time) {
   }
 }
 
-void RosAssembler::fill(Shown& out) {
+void RosAssembler::fill(TraceFrame& out) {
   frames_->move();
-  out.frame.tick = tick_;
-  out.frame.objects.resize(objects_.size());
-  out.frame.users.resize(users_.size());
-  out.chains.resize(objects_.size());
-  out.twists.assign(objects_.size(), std::nullopt);
-  for (std::size_t i = 0; i < objects_.size(); ++i) place(i, out);
-  for (std::size_t i = 0; i < users_.size(); ++i) press(i, out);
+  out = {};
+  out.tick = tick_;
+  for (const Object& object : objects_) out.objects.push_back(place(object));
+  for (const User& user : users_) out.users.push_back(press(user, out));
 }
 
-void RosAssembler::place(std::size_t object, Shown& out) {
-  const Object& o = objects_[object];
-  const RosSource& source = samples_.sources()[o.source];
-  const RosTrack& track = tracks_[o.source];
-  Pose& pose = out.frame.objects[object].pose;
-  if (source.kind == Kind::link) {
-    const RosFrames::Placed placed = frames_->of_link(o.source);
-    pose = placed.pose;
-    out.chains[object] = placed.chain;
-    return;
-  }
-  const RosFrames::Placed base = frames_->at(source.space, track.frame());
-  const Pose own = track.pose();
-  pose = {to_world(base.pose, own.position), base.pose.rotation * own.rotation};
-  out.chains[object] = 31 * base.chain + track.jumps();
-  if (!o.twist || !tracks_[*o.twist].has_begun()) return;
-  const RosTrack& told = tracks_[*o.twist];
-  const std::uint32_t space = samples_.sources()[*o.twist].space;
+RigidSample RosAssembler::place(const Object& object) {
+  const RosSource& source = samples_.sources()[object.source];
+  if (source.kind == Kind::link) return frames_->of_link(object.source);
+  RosTrack& track = tracks_[object.source];
+  RigidSample placed = hung(frames_->at(source.space, track.frame()), track.state());
+  if (!object.twist) return placed;
+  const RosTrack& told = tracks_[*object.twist];
+  const auto twist = told.twist(500'000'000 / info_.tick_rate);
+  if (!twist) return placed;
+  const std::uint32_t space = samples_.sources()[*object.twist].space;
   Quat turn = frames_->at(space, told.frame()).pose.rotation;
   const bool is_of_body = source.is_odometry && told.frame() != track.frame() && !samples_.link_of(space, told.frame());
-  if (is_of_body) turn = pose.rotation;
-  const Twist twist = told.is_between() || told.covers(500'000'000 / info_.tick_rate) ? told.twist() : Twist{};
-  out.twists[object] = Twist{rotate(turn, twist.linear), rotate(turn, twist.angular)};
+  if (is_of_body) turn = placed.pose.rotation;
+  placed.velocity = rotate(turn, twist->linear);
+  placed.angular_velocity = rotate(turn, twist->angular);
+  return placed;
 }
 
-void RosAssembler::press(std::size_t user, Shown& out) {
-  const User& u = users_[user];
-  const RosTrack& track = tracks_[u.source];
-  const std::uint32_t space = samples_.sources()[u.source].space;
+UserSample RosAssembler::press(const User& user, const TraceFrame& out) {
+  const RosTrack& track = tracks_[user.source];
+  const std::uint32_t space = samples_.sources()[user.source].space;
   const Pose frame = frames_->at(space, track.frame()).pose;
-  UserSample& sample = out.frame.users[user];
-  const Vec3 force = track.has_begun() ? rotate(frame.rotation, track.force()) : Vec3{};
-  sample.force = sample.server_force = force;
+  UserSample sample;
+  sample.force = sample.server_force = rotate(frame.rotation, track.force());
   if (samples_.link_of(space, track.frame())) sample.device.position = frame.position;
-  else if (u.beside) sample.device.position = out.frame.objects[*u.beside].pose.position;
+  else if (user.beside) sample.device.position = out.objects[*user.beside].pose.position;
   sample.contact.device = sample.device.position;
-}
-
-/// Of now_: told, or the mean from the tick before to the tick after; zero across jumps.
-void RosAssembler::set_velocities(const Shown* before, const Shown* after) {
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    RigidSample& object = now_.frame.objects[i];
-    Twist motion = now_.twists[i].value_or(Twist{});
-    const auto joined = [&](const Shown* other) {
-      return other != nullptr && other->chains[i] == now_.chains[i] ? other : &now_;
-    };
-    const Shown *from = joined(before), *to = joined(after);
-    if (!now_.twists[i] && to->frame.tick > from->frame.tick) {
-      const double span = static_cast<double>(to->frame.tick - from->frame.tick) / info_.tick_rate;
-      motion = motion_between(from->frame.objects[i].pose, to->frame.objects[i].pose, span);
-    }
-    object.velocity = motion.linear;
-    object.angular_velocity = motion.angular;
-  }
-}
-
-Result<bool> RosAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
-  if (held_ == 0) return false;
-  if (held_ < 0) {
-    TACTUS_TRY(const bool any, show(mcap, now_));
-    held_ = any ? 1 : 0;
-    if (!any) return false;
-  }
-  TACTUS_TRY(const bool more, show(mcap, after_));
-  set_velocities(has_before_ ? &before_ : nullptr, more ? &after_ : nullptr);
-  frame = now_.frame;
-  std::swap(before_, now_);
-  std::swap(now_, after_);
-  has_before_ = true;
-  held_ = more ? 1 : 0;
-  return true;
+  return sample;
 }
 
 }  // namespace

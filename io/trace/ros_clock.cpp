@@ -77,11 +77,13 @@ GapStatistics::Pace GapStatistics::pace() const {
   }
   const double mean = pace.length / count;
   if (mean > kBurst * pace.median && count >= 8) {
-    double longer = 0;
+    double longer = 0, within = 0;  // gaps between bursts; sum of those within
     for (const auto& [number, bin] : bins_)
       if (bin.sum > mean * static_cast<double>(bin.count)) longer += static_cast<double>(bin.count);
+      else within += bin.sum;
     pace.bursts = longer > 0 ? std::max(2.0, std::round((count + 1) / (longer + 1))) : count;
-    pace.period = mean;
+    pace.period = mean;  // else from the beginning of the first burst to that of the last
+    if (longer > 0) pace.period = (pace.length - within / (longer + 1)) / ((count + 1) * longer / (longer + 1));
     return pace;
   }
   double periods = 0;
@@ -186,6 +188,7 @@ void RosClock::choose(const std::vector<SourceFacts>& facts, const std::vector<b
     const auto log = facts[i].log.pace();
     if (moving[i] && log.in_bursts()) {
       use.spread = static_cast<std::uint64_t>(std::llround(1e9 * log.period));
+      use.far = std::llround(1e9 * (20 + 2 * log.bursts) * log.period) + kSecond / 10;
       most = std::max(most, static_cast<std::int64_t>(1e9 * 3 * log.bursts * log.period));
       least = std::min(least, -most);
     }
@@ -205,8 +208,7 @@ std::optional<std::uint64_t> RosClock::time_of(const RosSample& sample, std::int
   if (use.stamp && sample.stamp != 0 && std::abs(time - log) > 60 * kSecond) return std::nullopt;
   if (use.spread > 0) {
     const auto even = static_cast<std::int64_t>(use.last + use.spread);
-    const auto far = static_cast<std::int64_t>(20 * use.spread) + kSecond / 10;
-    time = use.last != 0 && std::abs(even - log) < far ? even : log;
+    time = use.last != 0 && std::abs(even - log) < use.far ? even : log;
     use.last = static_cast<std::uint64_t>(time);
   }
   return time < 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(time));

@@ -85,6 +85,13 @@ struct SourceFacts {
   std::int64_t least_lag = 0, most_lag = 0;  ///< [ns] log time behind the stamp
   std::optional<RosSample> first{};          ///< good one
   std::uint32_t last_parent = 0;
+  double moved = 0, turned = 0,
+         speed = 0;              ///< most away from the first pose [m], [rad]; of a twist the largest velocity
+  Vec3 before{}, before_that{};  ///< positions of the last two
+  std::uint64_t returns = 0;     ///< positions where the one before the last was, and the last was elsewhere
+  double return_distance = 0;    ///< [m] largest
+  /// Its poses go to and fro between two places.
+  bool swings() const noexcept { return samples >= 8 && 2 * returns > samples; }
   bool stamps_are_usable() const noexcept;
 };
 
@@ -109,6 +116,7 @@ class RosClock {
     bool stamp = false;
     std::int64_t offset = 0;
     std::uint64_t spread = 0;  // [ns] period of samples that come in bursts, without stamps that help
+    std::int64_t far = 0;      // [ns] by which the log may differ from even times
     std::uint64_t last = 0;
   };
   std::vector<Use> uses_;

@@ -1,68 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/trace/ros_frames.h>
 
-#include <algorithm>
-
-#include <tactus/trace/interpolation.h>
-
 namespace tactus {
+namespace {
+
+constexpr double kNanosecond = 1e-9;  // [s]
+
+}  // namespace
 
 // ==== track ====
 
-RosTrack::RosTrack(const std::optional<RosSample>& first, bool moves, std::uint64_t gap)
-    : first_(first), moves_(moves), gap_(gap) {}
+RosTrack::RosTrack(const std::optional<RosSample>& first, bool moves, std::uint64_t gap, std::uint64_t tick)
+    : first_(first), track_({.gap = static_cast<double>(gap), .tick = static_cast<double>(tick)}), moves_(moves) {}
 
-bool RosTrack::are_joined(const RosSample& a, const RosSample& b) const noexcept {
-  return a.frame == b.frame && b.time - a.time <= gap_;
-}
+void RosTrack::add(const RosSample& sample) { track_.add({static_cast<std::int64_t>(sample.time), sample.value, sample.frame}); }
 
-void RosTrack::move_to(std::uint64_t time) {
-  time_ = time;
-  while (samples_.size() > 1 && samples_[1].time <= time) {
-    if (!are_joined(samples_[0], samples_[1])) ++jumps_;
-    samples_.pop_front();
-  }
-  has_begun_ = !samples_.empty() && samples_.front().time <= time;
-  is_between_ = has_begun_ && samples_.size() > 1 && are_joined(samples_[0], samples_[1]);
-  share_ = 0;
-  if (is_between_)
-    share_ = static_cast<double>(time - samples_[0].time) / static_cast<double>(samples_[1].time - samples_[0].time);
-}
-
-bool RosTrack::covers(std::uint64_t near) const noexcept {
-  if (is_between_) return true;
-  const auto is_near = [&](const RosSample& s) { return (s.time > time_ ? s.time - time_ : time_ - s.time) <= near; };
-  return (!samples_.empty() && is_near(samples_.front())) || (samples_.size() > 1 && is_near(samples_[1]));
+bool RosTrack::is_settled(std::uint64_t time, std::uint64_t known) const noexcept {
+  return !moves_ || track_.is_settled(static_cast<std::int64_t>(time), static_cast<std::int64_t>(known));
 }
 
 std::optional<std::uint64_t> RosTrack::next_time() const noexcept {
-  for (std::size_t i = 0; i < std::min<std::size_t>(samples_.size(), 2); ++i)
-    if (samples_[i].time > time_) return samples_[i].time;
-  return std::nullopt;
+  const auto* next = track_.next();
+  return next == nullptr ? std::nullopt : std::optional(static_cast<std::uint64_t>(next->at));
 }
 
-Pose RosTrack::pose() const noexcept { return mixed(before().pose(), after().pose(), share_); }
+RigidSample RosTrack::state() noexcept { return has_samples() ? track_.moving(kNanosecond) : first_->value; }
 
-Twist RosTrack::twist() const noexcept {
-  const Twist a = before().twist(), b = after().twist();
-  return {mixed(a.linear, b.linear, share_), mixed(a.angular, b.angular, share_)};
+std::optional<Twist> RosTrack::twist(std::uint64_t near) const noexcept {
+  const bool is_told = track_.is_known() || (track_.place() == Track::Place::after && covers(near));
+  if (!is_told) return std::nullopt;
+  const RigidSample told = track_.is_known() ? track_.value() : track_.last();
+  return Twist{told.velocity, told.angular_velocity};
 }
-
-Vec3 RosTrack::force() const noexcept { return mixed(before().force(), after().force(), share_); }
 
 // ==== frames ====
 
-RosFrames::RosFrames(RosSamples& samples, const std::vector<RosTrack>& tracks, ReadNotes& notes)
-    : samples_(samples), tracks_(tracks), notes_(notes), states_(tracks.size()) {}
-
-RosFrames::Placed RosFrames::at(std::uint32_t space, std::uint32_t frame) {
-  const auto link = samples_.link_of(space, frame);
-  return link ? of_link(*link) : Placed{};
+RigidSample hung(const RigidSample& frame, const RigidSample& own) noexcept {
+  const Vec3 arm = rotate(frame.pose.rotation, own.pose.position);
+  return {{frame.pose.position + arm, frame.pose.rotation * own.pose.rotation},
+          frame.velocity + cross(frame.angular_velocity, arm) + rotate(frame.pose.rotation, own.velocity),
+          frame.angular_velocity + rotate(frame.pose.rotation, own.angular_velocity)};
 }
 
-RosFrames::Placed RosFrames::of_link(std::uint32_t link) {
+RosFrames::RosFrames(RosSamples& samples, std::vector<RosTrack>& tracks, ReadNotes& notes)
+    : samples_(samples), tracks_(tracks), notes_(notes), states_(tracks.size()) {}
+
+RigidSample RosFrames::at(std::uint32_t space, std::uint32_t frame) {
+  const auto link = samples_.link_of(space, frame);
+  return link ? of_link(*link) : RigidSample{};
+}
+
+RigidSample RosFrames::of_link(std::uint32_t link) {
   chain_.clear();
-  Placed above;
+  RigidSample above;
   for (std::optional<std::uint32_t> at = link; at;) {
     State& state = states_[*at];
     if (state.computed == generation_) {
@@ -82,10 +72,7 @@ RosFrames::Placed RosFrames::of_link(std::uint32_t link) {
     at = samples_.link_of(samples_.sources()[*at].space, tracks_[*at].frame());
   }
   for (; !chain_.empty(); chain_.pop_back()) {
-    const RosTrack& track = tracks_[chain_.back()];
-    const Pose own = track.pose();
-    above.pose = {to_world(above.pose, own.position), above.pose.rotation * own.rotation};
-    above.chain = 31 * above.chain + std::uint64_t{7} * chain_.back() + track.jumps() + 1;
+    above = hung(above, tracks_[chain_.back()].state());
     states_[chain_.back()].placed = above;
     states_[chain_.back()].computed = generation_;
     states_[chain_.back()].seen = 0;

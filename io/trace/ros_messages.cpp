@@ -24,8 +24,10 @@ const std::array<std::pair<std::string_view, RosType>, 6> types_by_schema{{{sche
                                                                            {kTransformSchema, RosType::transform},
                                                                            {kTransformsSchema, RosType::transforms}}};
 
-/// tf2 drops one leading slash.
-std::string_view frame_name(std::string_view text) noexcept { return text.starts_with('/') ? text.substr(1) : text; }
+/// tf2 drops a leading slash; a prefix of "/" leaves two.
+std::string_view frame_name(std::string_view text) noexcept {
+  return text.substr(std::min(text.find_first_not_of('/'), text.size()));
+}
 
 RosItem read_header(CdrReader& in) noexcept {
   RosItem item;

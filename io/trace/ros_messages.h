@@ -43,7 +43,7 @@ struct RosItem {
   RosFault fault = RosFault::none;
   bool has_stamp = false;         ///< it is neither zero nor impossible
   std::uint64_t stamp = 0;        ///< [ns]
-  std::string_view frame, child;  ///< header.frame_id and child_frame_id, without one leading slash
+  std::string_view frame, child;  ///< header.frame_id and child_frame_id, without leading slashes
   Pose pose{};                    ///< of a pose, an odometry and a transform: of unit length
   Twist twist{};                  ///< as told: of an odometry, in `child`
   RosFault twist_fault = RosFault::none;

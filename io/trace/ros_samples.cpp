@@ -22,13 +22,6 @@ std::string_view path_of(std::string_view topic) noexcept {
   return slash == std::string_view::npos ? std::string_view() : topic.substr(0, slash);
 }
 
-std::array<double, 7> values(const Pose& p) noexcept {
-  return {p.position.x, p.position.y, p.position.z, p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z};
-}
-std::array<double, 7> values(const Twist& t) noexcept {
-  return {t.linear.x, t.linear.y, t.linear.z, t.angular.x, t.angular.y, t.angular.z, 0};
-}
-
 bool holds(const std::vector<std::string>& list, const std::string& topic) {
   return std::ranges::any_of(list, [&](const std::string& one) { return one == topic || "/" + one == topic; });
 }
@@ -131,10 +124,10 @@ void RosSamples::take_item(const ChannelUse& use, const std::string& topic, cons
     return;
   }
   sample.source = *source;
-  if (use.type == RosType::twist) sample.value = values(item.twist);
-  else if (use.type == RosType::wrench) sample.value = {item.force.x, item.force.y, item.force.z};
-  else sample.value = values(item.pose);
-  waiting_.push_back(sample);
+  if (use.type == RosType::twist) sample.value = {{}, item.twist.linear, item.twist.angular};
+  else if (use.type == RosType::wrench) sample.value.pose.position = item.force;
+  else sample.value.pose = item.pose;
+  push(sample);
 }
 
 void RosSamples::take_odometry(const ChannelUse& use, const std::string& topic, const RosItem& item, RosSample sample) {
@@ -146,27 +139,65 @@ void RosSamples::take_odometry(const ChannelUse& use, const std::string& topic, 
   sample.source = *use.main;
   sample.fault = item.fault;
   sample.ignored = item.ignored;
-  sample.value = values(item.pose);
-  waiting_.push_back(sample);
+  sample.value.pose = item.pose;
+  push(sample);
   sample.source = *use.twist;
   sample.frame = number_of(item.child);
   sample.ignored = false;
   sample.fault = item.twist_fault;
-  sample.value = values(item.twist);
+  sample.value = {{}, item.twist.linear, item.twist.angular};
+  push(sample);
+}
+
+/// A copy of a sample tells nothing new, and makes what moves look as if it rested. Where stamps stand still there are no copies.
+void RosSamples::push(const RosSample& sample) {
+  constexpr std::int64_t kLongestRun = 1'000'000'000;  // [ns]
+  if (sample.fault == RosFault::none && sample.stamp != 0 && !sources_[sample.source].is_static) {
+    Run& run = runs_[sample.source];
+    const RigidSample &now = sample.value, &first = run.first.value;
+    const bool is_same = now.pose.position == first.pose.position && now.pose.rotation == first.pose.rotation &&
+                         now.velocity == first.velocity && now.angular_velocity == first.angular_velocity;
+    if (run.number == 0 || sample.stamp != run.first.stamp) {
+      run = {sample, run.number + 1};
+    } else if (run.number > 1 && is_same && sample.frame == run.first.frame &&
+               std::abs(static_cast<std::int64_t>(sample.log - run.first.log)) < kLongestRun) {
+      if (!is_closed_) ++copies_[sample.source];
+      return;
+    }
+  }
   waiting_.push_back(sample);
+}
+
+std::optional<std::uint32_t> RosSamples::link_in(std::string_view tree, std::string_view frame) const {
+  const auto space = numbers_.find(tree), child = numbers_.find(frame);
+  if (space == numbers_.end() || child == numbers_.end()) return std::nullopt;
+  const auto found = links_.find({space->second, child->second});
+  return found == links_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::uint32_t> RosSamples::prefixed(std::uint32_t space, std::uint32_t frame) const {
+  for (std::string path = name(space); !path.empty(); path.resize(path.find('/') == std::string::npos ? 0 : path.rfind('/'))) {
+    const std::string prefix = path + '/', &own = name(frame);
+    if (const auto link = link_in("", prefix + own)) return link;
+    if (!own.starts_with(prefix)) continue;
+    if (const auto link = link_in(path, std::string_view(own).substr(prefix.size()))) return link;
+  }
+  return std::nullopt;
 }
 
 std::optional<std::uint32_t> RosSamples::link_of(std::uint32_t space, std::uint32_t frame) {
   if (const auto known = found_.find({space, frame}); known != found_.end()) return known->second;
   std::optional<std::uint32_t> link;
+  bool is_parent = false;
   for (std::string_view path = name(space);;) {
     const auto tree = numbers_.find(path);
-    const auto found = tree == numbers_.end() ? links_.end() : links_.find({tree->second, frame});
-    if (found != links_.end()) link = found->second;
+    is_parent = is_parent || (tree != numbers_.end() && parents_.contains({tree->second, frame}));
+    link = link_in(path, name(frame));
     if (link || path.empty()) break;
     const std::size_t slash = path.rfind('/');
     path = slash == std::string_view::npos ? std::string_view() : path.substr(0, slash);
   }
+  if (!link && !is_parent) link = prefixed(space, frame);
   if (is_closed_) found_[{space, frame}] = link;
   return link;
 }

@@ -3,7 +3,6 @@
 /// another one. Internal to the library.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include <tactus/base/result.h>
+#include <tactus/rigid/rigid_state.h>
 #include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/ros_messages.h>
 
@@ -26,11 +26,7 @@ struct RosSample {
   std::uint64_t time = 0;            ///< [ns] by the clock that was chosen (RosClock)
   RosFault fault = RosFault::none;
   bool ignored = false;
-  std::array<double, 7> value{};  ///< position and rotation w x y z; linear and angular velocity; force
-
-  Pose pose() const noexcept { return {{value[0], value[1], value[2]}, {value[3], value[4], value[5], value[6]}}; }
-  Twist twist() const noexcept { return {{value[0], value[1], value[2]}, {value[3], value[4], value[5]}}; }
-  Vec3 force() const noexcept { return {value[0], value[1], value[2]}; }
+  RigidSample value{};  ///< of a pose or link its pose, of a twist its velocities, of a force its position is the force
 };
 
 struct RosSource {
@@ -55,7 +51,7 @@ class RosSamples {
   explicit RosSamples(RosSelection selection) : selection_(std::move(selection)) {}
 
   /// Begin a pass at a message, or the end.
-  void restart(mcap::Item first) { item_ = first, ordinal_ = 0, waiting_.clear(); }
+  void restart(mcap::Item first) { item_ = first, ordinal_ = 0, waiting_.clear(), runs_.clear(); }
   /// The next one; none at the end. Of a transform that cannot be read at all, the source is the topic itself.   err  those of the container
   Result<std::optional<RosSample>> next(mcap::Reader& mcap);
   /// Sources are kept from here on: samples of another one are counted in late() and left out.
@@ -63,7 +59,8 @@ class RosSamples {
 
   const std::vector<RosSource>& sources() const noexcept { return sources_; }
   const std::string& name(std::uint32_t name) const noexcept { return *names_[name]; }
-  /// The link that places this frame for topics in `space`: in its own tree, or one of a shorter path, or the common one.
+  /// The link that places this frame for topics in `space`: in its own tree, or one of a shorter path, or the common one. Where none has
+  /// it, "base" of /r1 may be "r1/base" of the common tree, and "r1/base" be "base" of the tree of /r1.
   std::optional<std::uint32_t> link_of(std::uint32_t space, std::uint32_t frame);
   /// Whether any tree for `space` has it, as a parent if not as a child.
   bool is_in_tree(std::uint32_t space, std::uint32_t frame);
@@ -76,6 +73,8 @@ class RosSamples {
   /// Topics that are not read, by type; those that were skipped on demand are not among them.
   std::vector<Other> others(const mcap::Reader& mcap) const;
   const std::map<std::string, std::uint64_t>& late() const noexcept { return late_; }
+  /// By source: samples with stamp and value of the one before, no more than a second after the first such one, which are left out.
+  const std::map<std::uint32_t, std::uint64_t>& copies() const noexcept { return copies_; }
   /// Topics told of by several channels.
   const std::map<std::string, int>& channels() const noexcept { return channels_of_topic_; }
   /// Two types on one topic, or the like: topic, then what.
@@ -87,10 +86,18 @@ class RosSamples {
     std::optional<std::uint32_t> main, twist;  // sources
     std::uint32_t space = 0;
   };
+  /// Samples with the same stamp.
+  struct Run {
+    RosSample first{};
+    std::uint64_t number = 0;
+  };
   const ChannelUse& use_of(const mcap::Reader& mcap, std::uint16_t id);
   std::uint32_t number_of(std::string_view name);
   std::optional<std::uint32_t> source_of(RosSource::Kind kind, const std::string& topic, std::uint32_t space,
                                          std::uint32_t child);
+  std::optional<std::uint32_t> prefixed(std::uint32_t space, std::uint32_t frame) const;
+  std::optional<std::uint32_t> link_in(std::string_view tree, std::string_view frame) const;
+  void push(const RosSample& sample);
   Result<void> take(mcap::Reader& mcap);
   void take_item(const ChannelUse& use, const std::string& topic, const RosItem& item, RosSample sample);
   void take_odometry(const ChannelUse& use, const std::string& topic, const RosItem& item, RosSample sample);
@@ -109,7 +116,9 @@ class RosSamples {
   std::map<std::uint16_t, ChannelUse> uses_;
   std::map<std::string, int> channels_of_topic_;
   std::map<std::string, std::uint64_t> late_;
-  std::deque<RosSample> waiting_;  // of the last message
+  std::map<std::uint32_t, std::uint64_t> copies_;
+  std::map<std::uint32_t, Run> runs_;  // the last one of each source
+  std::deque<RosSample> waiting_;      // of the last message
   std::vector<RosItem> items_;
 };
 

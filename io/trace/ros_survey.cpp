@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
@@ -18,6 +19,9 @@ using Kind = RosSource::Kind;
 
 constexpr double kLeastGap = 0.1, kMostGap = 10, kGapsOfMedian = 3;  // [s], [s], medians
 constexpr double kSlow = 10;                                         // [1/s]
+constexpr double kStray = 60, kOtherEpoch = 3e7;                     // [s] between log times that do not belong together
+constexpr std::size_t kMostStrays = 4096;
+constexpr double kSwing = 1e-3;  // [m] shortest way to and fro between places
 
 std::string text(double value, const char* format = "%.6g") {
   std::array<char, 40> out{};
@@ -46,7 +50,8 @@ Errc class_of(RosFault fault) noexcept {
 
 std::string RosSurvey::place_of(std::uint32_t source) const {
   const RosSource& s = samples_.sources()[source];
-  return s.kind == Kind::link ? "frame " + samples_.name(s.child) + " of " + s.topic : s.topic;
+  if (s.kind == Kind::link) return "frame " + samples_.name(s.child) + " of " + s.topic;
+  return s.kind == Kind::twist && s.is_odometry ? "twist of " + s.topic : s.topic;
 }
 
 std::string RosSurvey::text_of_time(std::uint64_t log) const {
@@ -56,6 +61,39 @@ std::string RosSurvey::text_of_time(std::uint64_t log) const {
 
 void RosSurvey::add(const RosSample& sample) {
   if (facts_.size() < samples_.sources().size()) facts_.resize(samples_.sources().size());
+  if (sample.fault != RosFault::none || samples_.sources()[sample.source].is_static) return take(sample);
+  if (!pending_.empty() && pending_.front().ordinal != sample.ordinal) settle(sample.log);
+  pending_.push_back(sample);
+}
+
+/// A log time that fits neither the messages around it nor its source is none: 0, or that of an unset clock.   in  next  of the message after
+void RosSurvey::settle(std::optional<std::uint64_t> next) {
+  if (pending_.empty()) return;
+  const RosSample& sample = pending_.front();
+  const auto apart = [](std::uint64_t a, std::uint64_t b) { return 1e-9 * static_cast<double>(a < b ? b - a : a - b); };
+  const auto own = own_log_.find(sample.source);
+  bool is_stray = false;
+  if (last_log_ && next)
+    is_stray = apart(*last_log_, sample.log) > kStray && apart(*next, sample.log) > kStray && apart(*last_log_, *next) < kStray &&
+               (own == own_log_.end() || apart(own->second, sample.log) > kStray);
+  else if (last_log_ || next) is_stray = apart(last_log_ ? *last_log_ : *next, sample.log) > kOtherEpoch;
+  own_log_[sample.source] = sample.log;
+  if (is_stray && strays_.size() < kMostStrays) {
+    const std::uint64_t before = last_log_ ? *last_log_ : *next, after = next ? *next : before;
+    strays_[sample.ordinal] = std::min(before, after) + (std::max(before, after) - std::min(before, after)) / 2;
+    for (RosSample& one : pending_) one.log = strays_[sample.ordinal];
+  }
+  last_log_ = sample.log;
+  for (const RosSample& one : pending_) take(one);
+  pending_.clear();
+}
+
+std::uint64_t RosSurvey::log_of(const RosSample& sample) const {
+  const auto found = strays_.find(sample.ordinal);
+  return found == strays_.end() ? sample.log : found->second;
+}
+
+void RosSurvey::take(const RosSample& sample) {
   if (sample.fault != RosFault::none) {
     Seen& seen = faults_[{sample.source, sample.fault}];
     if (seen.count++ == 0) seen.log = sample.log;
@@ -65,6 +103,20 @@ void RosSurvey::add(const RosSample& sample) {
   const RosSource& source = samples_.sources()[sample.source];
   if (!source.is_static) steps_.add(sample.ordinal, sample.source, sample.log);
   add_good(sample, static_cast<std::uint64_t>(static_cast<std::int64_t>(sample.log) + steps_.added()));
+}
+
+void RosSurvey::add_motion(SourceFacts& facts, const RosSample& sample) const {
+  const RigidSample &value = sample.value, &first = facts.first->value;
+  facts.speed = std::max({facts.speed, norm(value.velocity), norm(value.angular_velocity)});
+  if (samples_.sources()[sample.source].kind != Kind::pose && samples_.sources()[sample.source].kind != Kind::link) return;
+  facts.moved = std::max(facts.moved, norm(value.pose.position - first.pose.position));
+  facts.turned = std::max(facts.turned, angle_between(first.pose.rotation, value.pose.rotation));
+  const double there = norm(value.pose.position - facts.before), back = norm(value.pose.position - facts.before_that);
+  if (facts.samples > 2 && sample.frame == facts.last_parent && there > kSwing && back < 0.1 * there) {
+    ++facts.returns;
+    facts.return_distance = std::max(facts.return_distance, there);
+  }
+  facts.before_that = std::exchange(facts.before, value.pose.position);
 }
 
 void RosSurvey::add_good(const RosSample& sample, std::uint64_t log) {
@@ -87,6 +139,7 @@ void RosSurvey::add_good(const RosSample& sample, std::uint64_t log) {
     Change& change = changes_[sample.source];
     if (change.count++ == 0) change = {1, sample.log, facts.last_parent, sample.frame};
   }
+  add_motion(facts, sample);
   facts.last_parent = sample.frame;
 }
 
@@ -97,16 +150,17 @@ tl::expected<void, Diagnostic> RosSurvey::check() const {
   });
   if (first_fault_ && (options_.strict || !any)) {
     const RosFault fault = first_fault_->fault;
-    return tl::unexpected(
-        Diagnostic{.error = fail(class_of(fault), rule_of(fault)).value(),
-                   .detail = place_of(first_fault_->source) + ", " + text_of_time(first_fault_->log) + ": " + text_of(fault),
-                   .remedy = options_.strict ? "Without --strict such samples count as missing."
-                                             : "No sample of the recording can be used: check what wrote it."});
+    return tl::unexpected(Diagnostic{.error = fail(class_of(fault), rule_of(fault)).value(),
+                                     .detail = place_of(first_fault_->source) + ", " + text_of_time(first_fault_->log),
+                                     .cause = text_of(fault),
+                                     .remedy = options_.strict ? "Without --strict such samples count as missing."
+                                                               : "No sample of the recording can be used: check what wrote it."});
   }
   return {};
 }
 
 tl::expected<void, Diagnostic> RosSurvey::end(const mcap::Reader& mcap) {
+  settle({});
   facts_.resize(samples_.sources().size());
   steps_.end();
   const auto& sources = samples_.sources();
@@ -125,7 +179,7 @@ tl::expected<void, Diagnostic> RosSurvey::end(const mcap::Reader& mcap) {
       detail += (detail.empty() ? "it has " : ", ") + counted(other.topics, "topic") + " of " + shown(other.type);
     if (detail.empty()) detail = "it has no messages of poses, transforms or forces";
     if (mcap.cut_short() && !first_fault_) return tl::unexpected(Diagnostic{.error = fail(Errc::truncated, "R-TRC-3").value()});
-    return tl::unexpected(Diagnostic{.error = fail(Errc::unsupported, "R-TRC-16").value(), .detail = detail});
+    return tl::unexpected(Diagnostic{.error = fail(Errc::unsupported, "R-TRC-16").value(), .cause = detail});
   }
   moving_.assign(sources.size(), false);
   for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -140,10 +194,12 @@ tl::expected<void, Diagnostic> RosSurvey::end(const mcap::Reader& mcap) {
 void RosSurvey::find_start() {
   const auto& sources = samples_.sources();
   start_ = std::numeric_limits<std::uint64_t>::max();
+  if (std::ranges::find(moving_, true) != moving_.end()) log_start_ = start_;
   std::uint64_t most = 0;
   gaps_.assign(sources.size(), static_cast<std::uint64_t>(1e9 * kLeastGap));
   for (std::uint32_t i = 0; i < sources.size(); ++i) {
     if (!moving_[i]) continue;
+    log_start_ = std::min(log_start_, facts_[i].log.first());
     const auto pace = clock_.pace(i, facts_);
     gaps_[i] = static_cast<std::uint64_t>(
         1e9 *
@@ -173,6 +229,9 @@ void RosSurvey::tell(const mcap::Reader& mcap, bool whole, ReadNotes& notes) {
 }
 
 void RosSurvey::tell_clock(ReadNotes& notes) const {
+  if (!strays_.empty())
+    notes.add("", counted(strays_.size(), "message") + " with a log time far from those around: taken between them",
+              "the first is message " + std::to_string(strays_.begin()->first));
   for (const auto& step : steps_.steps()) {
     const std::int64_t before = steps_.added_at(step.ordinal - 1);
     notes.add(
@@ -217,9 +276,11 @@ void RosSurvey::tell_stamps(ReadNotes& notes) const {
       any = true;
     }
   }
+  const bool is_ahead = most < 0;
+  if (is_ahead) least = -std::exchange(most, -least);
   if (any)
     notes.add("", "log times are the clock; header stamps, which are " + text(least, "%.9g") + " to " + text(most, "%.9g") +
-                      " s before them, are ignored");
+                      " s " + (is_ahead ? "after" : "before") + " them, are ignored");
 }
 
 void RosSurvey::tell_rate(ReadNotes& notes) const {
@@ -249,7 +310,13 @@ void RosSurvey::tell_source(std::uint32_t source, ReadNotes& notes) const {
                 "the first " + text_of_time(seen.log));
   if (const auto found = ignored_.find(source); found != ignored_.end())
     notes.add(place_of(source), kind == Kind::force ? "torques are ignored" : "covariances are ignored");
-  if (facts.samples == 0 || !moving_[source]) return;
+  if (const auto copies = samples_.copies().find(source); copies != samples_.copies().end())
+    notes.add(place_of(source), counted(copies->second, "sample") + " with the stamp and the value of the one before: left out");
+  if (facts.swings())
+    notes.add(place_of(source), "its samples go to and fro between two places, up to " + text(facts.return_distance, "%.3g") +
+                                    " m apart, as of two publishers: let each have a topic of its own");
+  if (facts.samples == 0) return;
+  if (!moving_[source]) return tell_rest(source, notes);
   const GapStatistics& times = clock_.takes_stamp(source) ? facts.stamps : facts.log;
   if (times.equal() > 0 && !clock_.spreads(source))
     notes.add(place_of(source),
@@ -260,21 +327,32 @@ void RosSurvey::tell_source(std::uint32_t source, ReadNotes& notes) const {
   tell_gaps(source, notes);
 }
 
+/// Of what is told once, or by a static transform.
+void RosSurvey::tell_rest(std::uint32_t source, ReadNotes& notes) const {
+  const SourceFacts& facts = facts_[source];
+  if (facts.log.first() > log_start_ + gaps_[source])
+    notes.add(place_of(source), std::string("is told ") + text_of_time(facts.log.first()) + "; it holds from the beginning");
+  if (facts.moved > 0 || facts.turned > 0) notes.add(place_of(source), "is told to have changed; it jumps then");
+}
+
 void RosSurvey::tell_gaps(std::uint32_t source, ReadNotes& notes) const {
   const SourceFacts& facts = facts_[source];
   const Kind kind = samples_.sources()[source].kind;
   const GapStatistics& times = clock_.takes_stamp(source) ? facts.stamps : facts.log;
   const double gap = 1e-9 * static_cast<double>(gaps_[source]);
-  const char* before = kind == Kind::force ? "before, the force is 0" : "before, it stands at its first pose";
+  const bool is_force = kind == Kind::force;
+  const char* before = is_force ? "before, the force is 0" : "before, it stands at its first pose";
   const auto& densest = clock_.takes_stamp(densest_) ? facts_[densest_].stamps : facts_[densest_].log;
   if (kind != Kind::twist && facts.log.first() > log_start_ + gaps_[source])
     notes.add(place_of(source), std::string("begins ") + text_of_time(facts.log.first()) + "; " + before);
   if (kind != Kind::twist && times.last() + gaps_[source] < densest.last() &&
       clock_.takes_stamp(source) == clock_.takes_stamp(densest_))
-    notes.add(place_of(source), "ends " + text_of_time(facts.log.last()) + "; after, it rests");
+    notes.add(place_of(source),
+              "ends " + text_of_time(facts.log.last()) + (is_force ? "; after, the force is 0" : "; after, it rests"));
   if (!clock_.spreads(source) && times.largest() > gap)
     notes.add(place_of(source), counted(times.longer_than(gap), "gap") + " longer than " + text(gap, "%.3g") +
-                                    " s, the largest " + seconds(times.largest()) + ": it rests there");
+                                    " s, the largest " + seconds(times.largest()) +
+                                    (is_force ? ": the force is held for as long, then 0" : ": it rests there"));
 }
 
 void RosSurvey::tell_frames(ReadNotes& notes) {
@@ -286,6 +364,13 @@ void RosSurvey::tell_frames(ReadNotes& notes) {
                   ", before on " + samples_.name(change.from) +
                   (change.count > 1 ? ", and so on " + counted(change.count, "time") : "") + "; followed",
               text_of_time(change.log));
+  }
+  for (std::uint32_t i = 0; i < sources.size(); ++i) {
+    if (facts_[i].samples == 0) continue;
+    const auto link = samples_.link_of(sources[i].space, facts_[i].first->frame);
+    if (link && sources[*link].child != facts_[i].first->frame)
+      notes.add(place_of(i), "frame '" + samples_.name(facts_[i].first->frame) + "' is taken for '" +
+                                 samples_.name(sources[*link].child) + "' of " + sources[*link].topic);
   }
   std::map<std::string, std::vector<std::uint32_t>> roots;  // frames that are taken for the world
   for (std::uint32_t i = 0; i < sources.size(); ++i) {

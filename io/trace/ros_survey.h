@@ -32,6 +32,8 @@ class RosSurvey {
   std::uint64_t disorder() const noexcept { return steps_.disorder() + clock_.disorder(); }
   std::uint64_t gap(std::uint32_t source) const noexcept { return gaps_[source]; }  ///< [ns]
   bool moves(std::uint32_t source) const noexcept { return moving_[source]; }
+  /// [ns] Log time; where that of a message is far from those around it, one between them.
+  std::uint64_t log_of(const RosSample& sample) const;
   const SourceFacts& facts(std::uint32_t source) const noexcept { return facts_[source]; }
   ClockSteps& steps() noexcept { return steps_; }
   RosClock& clock() noexcept { return clock_; }
@@ -47,13 +49,17 @@ class RosSurvey {
     std::uint64_t count = 0, log = 0;
     std::uint32_t from = 0, to = 0;
   };
+  void settle(std::optional<std::uint64_t> next);
+  void take(const RosSample& sample);
   void add_good(const RosSample& sample, std::uint64_t log);
+  void add_motion(SourceFacts& facts, const RosSample& sample) const;
   tl::expected<void, Diagnostic> check() const;
   void find_start();
   void tell_clock(ReadNotes& notes) const;
   void tell_stamps(ReadNotes& notes) const;
   void tell_rate(ReadNotes& notes) const;
   void tell_source(std::uint32_t source, ReadNotes& notes) const;
+  void tell_rest(std::uint32_t source, ReadNotes& notes) const;
   void tell_gaps(std::uint32_t source, ReadNotes& notes) const;
   void tell_frames(ReadNotes& notes);
   void tell_topics(const mcap::Reader& mcap, ReadNotes& notes) const;
@@ -61,6 +67,10 @@ class RosSurvey {
   RosSamples& samples_;
   const ReadOptions& options_;
   std::vector<SourceFacts> facts_;
+  std::vector<RosSample> pending_;                  // of one message, until the log time of the next is known
+  std::optional<std::uint64_t> last_log_;           // of the message before
+  std::map<std::uint32_t, std::uint64_t> own_log_;  // of the last sample of each source
+  std::map<std::uint64_t, std::uint64_t> strays_;   // by ordinal: the time that is taken
   std::vector<bool> moving_;
   std::vector<std::uint64_t> gaps_;
   std::map<std::pair<std::uint32_t, RosFault>, Seen> faults_;

@@ -62,13 +62,15 @@ class TactusAssembler final : public FrameAssembler {
   };
   Result<void> find_channels(const mcap::Reader& mcap, Errc missing);
   Result<void> read_rest(mcap::Reader& mcap);
+  enum class Assembled : std::uint8_t { whole, left_out, ended };
   Result<bool> assemble(mcap::Reader& mcap);
+  Result<Assembled> assemble_tick(mcap::Reader& mcap);
   Result<void> advance(mcap::Reader& mcap);
   Result<void> take(const mcap::Reader& mcap, std::int64_t tick);
   Result<std::uint64_t> store(const mcap::Reader& mcap, const TraceChannel& channel);
   Result<std::uint64_t> store_shown(std::span<const std::uint8_t> data);
   Result<std::uint64_t> store_user(std::span<const std::uint8_t> data, const TraceChannel& channel);
-  bool is_complete(std::int64_t tick) const noexcept;
+  bool is_complete(std::int64_t tick, bool skips_damage) const noexcept;
   void deliver(TraceFrame& frame) const;
 
   TraceInfo info_;
@@ -222,10 +224,22 @@ void TactusAssembler::deliver(TraceFrame& frame) const {
 
 /// Put the messages of the next tick into current_; false at the end.
 Result<bool> TactusAssembler::assemble(mcap::Reader& mcap) {
-  if (item_ == mcap::Item::end) return false;
+  for (;;) {
+    TACTUS_TRY(const Assembled assembled, assemble_tick(mcap));
+    if (assembled != Assembled::left_out) return assembled == Assembled::whole;
+  }
+}
+
+Result<TactusAssembler::Assembled> TactusAssembler::assemble_tick(mcap::Reader& mcap) {
+  if (item_ == mcap::Item::end) return Assembled::ended;
   const std::uint64_t time = mcap.message().log_time;
   const std::int64_t tick = tick_of_time(time, info_.tick_rate);
-  if (tick <= last_tick_ || tick / info_.tick_rate >= kMaxSeconds) return refuse(mcap, Errc::invalid, "R-TRC-15");
+  if (tick <= last_tick_ || tick / info_.tick_rate >= kMaxSeconds) {
+    if (!mcap.skips_damage()) return refuse(mcap, Errc::invalid, "R-TRC-15");
+    mcap.lose_message(fail(Errc::invalid, "R-TRC-15").value());
+    TACTUS_CHECK(advance(mcap));
+    return Assembled::left_out;
+  }
   TACTUS_CHECK(mcap.spend(static_objects_ * kCostOfStatic));
   current_.tick = tick;
   current_.marker.clear();
@@ -236,16 +250,23 @@ Result<bool> TactusAssembler::assemble(mcap::Reader& mcap) {
     user.reports.sizes.clear();
     user.reports.bytes.clear();
   }
+  bool is_spoilt = false;
   while (item_ == mcap::Item::message && mcap.message().log_time == time) {
-    TACTUS_CHECK(take(mcap, tick));
+    if (const auto taken = take(mcap, tick); !taken) {
+      if (!mcap.skips_damage()) return tl::unexpected(taken.error());
+      mcap.lose_message(taken.error());
+      is_spoilt = true;
+    }
     TACTUS_CHECK(advance(mcap));
   }
-  if (!is_complete(tick)) {
-    if (item_ == mcap::Item::end && mcap.cut_short()) return false;
-    return refuse(mcap, Errc::invalid, "R-TRC-15");
+  if (is_spoilt || !is_complete(tick, mcap.skips_damage())) {
+    if (item_ == mcap::Item::end && mcap.cut_short()) return Assembled::ended;
+    if (!mcap.skips_damage()) return refuse(mcap, Errc::invalid, "R-TRC-15");
+    if (!is_spoilt) mcap.lose_tick(fail(Errc::invalid, "R-TRC-15").value(), time);
+    return Assembled::left_out;
   }
   last_tick_ = tick;
-  return true;
+  return Assembled::whole;
 }
 
 Result<void> TactusAssembler::take(const mcap::Reader& mcap, std::int64_t tick) {
@@ -347,13 +368,14 @@ Result<std::uint64_t> TactusAssembler::store_user(std::span<const std::uint8_t> 
   return vector.time;
 }
 
-bool TactusAssembler::is_complete(std::int64_t tick) const noexcept {
+/// What is said once may have been said in a tick that is left out.
+bool TactusAssembler::is_complete(std::int64_t tick, bool skips_damage) const noexcept {
   return std::all_of(routes_.begin(), routes_.end(), [&](const auto& entry) {
     const Route& route = entry.second;
     const Occurs occurs = route.channel.occurs;
     const bool is_due =
         occurs == Occurs::every_tick || (last_tick_ < 0 && (occurs == Occurs::first_tick || occurs == Occurs::when_changed));
-    return !is_due || route.last_tick == tick;
+    return !is_due || route.last_tick == tick || (skips_damage && occurs != Occurs::every_tick && route.last_tick >= 0);
   });
 }
 

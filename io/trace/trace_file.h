@@ -35,13 +35,15 @@
 /// rule      class             broken when
 /// R-TRC-1   io                the operating system refuses to open, read or write the file; errno tells why
 /// R-TRC-2   malformed         MCAP's magic bytes are not at the front, or not at the very end behind a footer
+///           unsupported       the file is of another known kind, or a folder holds no bag of MCAP files
 /// R-TRC-3   truncated         the file ends before the header, the channels that its metadata announces, or any pose,
 ///                             or the first tick of a recording with meshes
 /// R-TRC-4   malformed         a length inside a record reaches past the record's end
 /// R-TRC-5   limit_exceeded    a record, a chunk or all declarations are larger than accepted
 /// R-TRC-6   checksum          a CRC-32 does not match
-/// R-TRC-7   unsupported       compression, message encoding or format version that this reader does not know
-/// R-TRC-8   malformed         a chunk's records are no zstd data of exactly the announced size
+/// R-TRC-7   unsupported       compression, message encoding (ROS 1, protobuf, JSON) or version that this reader does not know
+/// R-TRC-8   malformed         a chunk's records or a compressed message are no zstd or LZ4 data of exactly the announced size, or a
+///                             compressed file is damaged
 /// R-TRC-9   malformed         a record or the summary stands where it must not
 ///           invalid           the footer points elsewhere than to the summary
 /// R-TRC-10  invalid           a schema or channel is used undeclared or declared twice with a difference
@@ -112,6 +114,12 @@ enum class RosStamps : std::uint8_t {
   log,
 };
 
+/// A topic of a file, and how many of its messages were read.
+struct TraceTopic {
+  std::string topic, type;
+  std::uint64_t messages = 0;
+};
+
 /// How a recording of another program is read. Our own traces leave nothing to choose.
 struct ReadOptions {
   std::vector<std::string>
@@ -121,6 +129,8 @@ struct ReadOptions {
   double gap = 0;                   ///< [s] longest time to interpolate over; 0: see TraceReader
   std::uint32_t tick_rate = 0;      ///< 1 .. 1000000; 0: follows from the recording
   RosStamps stamps = RosStamps::automatic;
+  OnDamage on_damage = OnDamage::refuse;  ///< also of our own traces
+  ReadWatcher* watcher = nullptr;         ///< of the look at a foreign recording that open() takes; may be null
 };
 
 /// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. Foreign ROS 2 recordings are read too. What is decided
@@ -128,13 +138,14 @@ struct ReadOptions {
 ///
 /// What becomes what
 ///   PoseStamped, Odometry          each topic is an object; its motion is the odometry's, or the TwistStamped topic beside it (same path
-///                                  except for the last part), else differences of its poses over two ticks
+///                                  except for the last part), else that of its poses: at a sample from the one before to the one after,
+///                                  between samples on the line between their velocities
 ///   TransformStamped, TFMessage    each frame that hangs on another one is an object; /r1/tf is a tree of its own, whose frame `base` is
 ///                                  the object r1.base
 ///   WrenchStamped                  each topic is a user who feels the force, where its frame is, or the one object of a topic beside it
 ///   One topic on several channels is one source. Torques and covariances are ignored; other types are not read.
 /// Frames
-///   What is told in a frame is turned and moved into the world: the frame that hangs on none. One leading slash of a name is dropped. The
+///   What is told in a frame is turned and moved into the world: the frame that hangs on none. Leading slashes of names are dropped. The
 ///   frames of a topic /r1/... are looked up in the tree of /r1/tf, then in the common one. An odometry's twist is told in child_frame_id:
 ///   that frame of the tree, else the frame of the pose. A frame that comes to hang on another one is followed from then on; a transform
 ///   that closes a loop is left out.
@@ -145,9 +156,10 @@ struct ReadOptions {
 ///   Messages are sorted; a window holds back as much as the recording is out of order, at most 262144 samples.
 /// Between samples
 ///   At each tick poses, transforms, forces and twists follow a line and the shorter arc between the samples around it, if these are not
-///   farther apart than the gap: 3 times the median gap of the source, at least 0.1 s and at most 10 s. Over longer gaps, and after its
-///   last sample, a source rests; before its first, an object stands at its first pose and a force is 0. Ticks at which nothing is recorded
-///   by any source are left out. Of samples with the same time the last counts.
+///   farther apart than the gap: 3 times the median gap of the source, at least 0.1 s and at most 10 s. Over longer gaps, ahead of its first
+///   sample and after its last, an object rests at the sample beside; a force is held for as long as the gap and is 0 beyond. A transform
+///   of /tf_static holds until it changes. Ticks at which nothing is recorded by any source are left out. Of samples with the same time the
+///   last counts; one with the stamp and the value of the sample before is left out as a copy.
 /// Missing samples
 ///   A message that is not of its type, a number that is NaN, infinite or beyond 1e15, a rotation whose length is off 1 by more than 2 %:
 ///   such a sample counts as missing.
@@ -156,15 +168,17 @@ struct ReadOptions {
 /// samples are; topics and frames that begin later are left out.
 class TraceReader {
  public:
-  /// path "-" is standard input.   err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n,
-  ///      R-SRF-n
+  /// in   path  a file, a bag's folder or its metadata.yaml; "-" is standard input. zstd and LZ4 files are unpacked on the way
+  /// err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n, R-SRF-n
   static Result<TraceReader> open(const std::string& path);
-  /// The same, where an error says which topic, when and what.
+  /// The same, where an error says what is wrong, where, and what mends it.
   static tl::expected<TraceReader, Diagnostic> open(const std::string& path, const ReadOptions& options);
   /// The same from memory that outlives the reader.
   static Result<TraceReader> open_memory(std::span<const std::uint8_t> bytes);
-  /// What was decided about a foreign recording; complete once next() has returned false.
-  const std::vector<ReadNote>& notes() const noexcept;
+  /// What was decided about the files of a folder and about a foreign recording; complete once next() has returned false.
+  std::vector<ReadNote> notes() const;
+  /// What OnDamage::skip left out so far.
+  const std::vector<ReadLoss>& losses() const noexcept;
   /// The last error of next(), with what is known beyond its rule.
   Diagnostic explain(const Error& error) const;
   const TraceInfo& info() const noexcept;
@@ -173,6 +187,14 @@ class TraceReader {
   /// Read the next frame into `frame`; false at the end. Pass the frame of the previous call: its vectors are reused, and a shape
   /// that is not new stays in it. Do not use the reader after an error.
   Result<bool> next(TraceFrame& frame);
+  /// All that the file declares, and what was read of it so far.
+  std::vector<TraceTopic> topics() const;
+  /// Bytes of the files that were read, and of all; none for a pipe.
+  struct Bytes {
+    std::uint64_t read = 0;
+    std::optional<std::uint64_t> all{};
+  };
+  Bytes bytes() const;
   /// True if the file ends early (crash, truncation); everything up to its last whole chunk was delivered. Valid once next() has
   /// returned false.
   bool cut_short() const noexcept;

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <string_view>
+
 #include <tactus/base/rule.h>
+#include <tactus/trace/file_kind.h>
 #include <tactus/trace/frame_assembler.h>
 #include <tactus/trace/trace_bounds.h>
 #include <tactus/trace/trace_capture.h>
@@ -30,6 +34,10 @@ Result<Preamble> read_preamble(mcap::Reader& mcap) {
   }
 }
 
+constexpr const char* kReadTypes[] = {"geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/TwistStamped",
+                                      "nav_msgs/msg/Odometry",         "geometry_msgs/msg/WrenchStamped",
+                                      "tf2_msgs/msg/TFMessage",        "geometry_msgs/msg/TransformStamped"};
+
 }  // namespace
 
 bool carries(const mcap::Reader& mcap, const mcap::Channel& channel, std::string_view schema) {
@@ -38,8 +46,7 @@ bool carries(const mcap::Reader& mcap, const mcap::Channel& channel, std::string
 }
 
 struct TraceReader::Impl {
-  template <class Open>
-  static tl::expected<TraceReader, Diagnostic> open(const Open& source, const ReadOptions& options);
+  static tl::expected<TraceReader, Diagnostic> open(const RecordingFiles& files, const ReadOptions& options);
 
   mcap::Reader mcap;
   std::optional<mcap::Statistics> statistics;
@@ -48,65 +55,81 @@ struct TraceReader::Impl {
 
 namespace {
 
-template <class T>
-tl::expected<T, Diagnostic> told(Result<T> result) {
-  if (!result) return tl::unexpected(Diagnostic{.error = result.error()});
-  return std::move(*result);
+/// Why no trace can be made of a foreign file: when there is nothing of use in it, what there is.
+Diagnostic refused_foreign(const mcap::Reader& mcap, Diagnostic error) {
+  const auto is_of_use = [&](const auto& entry) {
+    return std::ranges::any_of(kReadTypes, [&](const char* type) { return carries(mcap, entry.second, type); });
+  };
+  if (error.error.rule != std::string_view("R-TRC-16") || std::ranges::any_of(mcap.channels(), is_of_use)) return error;
+  return nothing_of_use(mcap.schemas(), mcap.channels(), mcap.files().paths.empty() ? "" : mcap.files().paths.front());
 }
 
 }  // namespace
 
-/// in  source  opens the bytes; twice, if they can be read twice
-template <class Open>
-tl::expected<TraceReader, Diagnostic> TraceReader::Impl::open(const Open& source, const ReadOptions& options) try {
-  TACTUS_TRY(ByteSource bytes, told(source()));
-  const bool is_rereadable = bytes.size().has_value();
-  TACTUS_TRY(auto mcap, told(mcap::Reader::open(std::move(bytes))));
+tl::expected<TraceReader, Diagnostic> TraceReader::Impl::open(const RecordingFiles& files, const ReadOptions& options) {
+  TACTUS_TRY(auto mcap, mcap::Reader::open(files, options.on_damage));
   auto statistics = mcap.statistics();
-  TACTUS_TRY(const Preamble preamble, told(read_preamble(mcap)));
+  const auto preamble = read_preamble(mcap);
+  if (!preamble) return tl::unexpected(mcap.explain(preamble.error()));
   std::unique_ptr<FrameAssembler> assembler;
-  if (preamble.tactus) {
-    TACTUS_TRY(assembler, told(assemble_tactus(mcap, preamble)));
+  if (preamble->tactus) {
+    auto made = assemble_tactus(mcap, *preamble);
+    if (!made) return tl::unexpected(mcap.explain(made.error()));
+    assembler = *std::move(made);
   } else {
     std::optional<mcap::Reader> ahead;
-    if (is_rereadable) {
-      TACTUS_TRY(ByteSource again, told(source()));
-      TACTUS_TRY(ahead, told(mcap::Reader::open(std::move(again))));
+    if (const auto bytes = files.bytes()) {
+      TACTUS_TRY(ahead, mcap::Reader::open(files, options.on_damage));
+      ahead->watch(options.watcher, *bytes);
     }
-    TACTUS_TRY(assembler, assemble_ros(mcap, std::move(ahead), preamble, options));
+    auto made = assemble_ros(mcap, std::move(ahead), *preamble, options);
+    if (!made) return tl::unexpected(refused_foreign(mcap, std::move(made).error()));
+    assembler = *std::move(made);
   }
   return TraceReader(std::make_unique<Impl>(Impl{std::move(mcap), std::move(statistics), std::move(assembler)}));
+}
+
+tl::expected<TraceReader, Diagnostic> TraceReader::open(const std::string& path, const ReadOptions& options) try {
+  auto reader = files_of(path, options.on_damage == OnDamage::skip ? MissingFiles::leave_out : MissingFiles::refuse)
+                    .and_then([&](const RecordingFiles& files) { return Impl::open(files, options); });
+  if (!reader) reader.error().file = path;
+  return reader;
 } catch (const std::bad_alloc&) {
   return tl::unexpected(Diagnostic{.error = out_of_memory().value()});
 }
 
-tl::expected<TraceReader, Diagnostic> TraceReader::open(const std::string& path, const ReadOptions& options) {
-  auto reader = Impl::open([&] { return ByteSource::open_file(path); }, options);
-  if (!reader && reader.error().file.empty()) reader.error().file = path;
-  return reader;
+Result<TraceReader> TraceReader::open(const std::string& path) {
+  return open(path, {}).map_error([](const Diagnostic& error) { return error.error; });
 }
 
-Result<TraceReader> TraceReader::open(const std::string& path) try {
-  auto reader = Impl::open([&] { return ByteSource::open_file(path); }, {});
-  if (!reader) return tl::unexpected(reader.error().error);
-  return std::move(*reader);
+Result<TraceReader> TraceReader::open_memory(std::span<const std::uint8_t> bytes) try {
+  return Impl::open({.memory = bytes}, {}).map_error([](const Diagnostic& error) { return error.error; });
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
 
-Result<TraceReader> TraceReader::open_memory(std::span<const std::uint8_t> bytes) {
-  auto reader = Impl::open([&]() -> Result<ByteSource> { return ByteSource::over_memory(bytes); }, {});
-  if (!reader) return tl::unexpected(reader.error().error);
-  return std::move(*reader);
+std::vector<ReadNote> TraceReader::notes() const {
+  std::vector<ReadNote> all = impl_->mcap.notes().all();
+  if (const ReadNotes* notes = impl_->assembler->notes()) all.insert(all.end(), notes->all().begin(), notes->all().end());
+  return all;
 }
 
-const std::vector<ReadNote>& TraceReader::notes() const noexcept {
-  static const std::vector<ReadNote> none;
-  const ReadNotes* notes = impl_->assembler->notes();
-  return notes == nullptr ? none : notes->all();
+const std::vector<ReadLoss>& TraceReader::losses() const noexcept { return impl_->mcap.losses(); }
+
+Diagnostic TraceReader::explain(const Error& error) const {
+  if (std::string cause = impl_->assembler->detail(); !cause.empty()) return {.error = error, .cause = std::move(cause)};
+  return impl_->mcap.explain(error);
 }
 
-Diagnostic TraceReader::explain(const Error& error) const { return {.error = error, .detail = impl_->assembler->detail()}; }
+std::vector<TraceTopic> TraceReader::topics() const {
+  std::vector<TraceTopic> topics;
+  for (const auto& [id, channel] : impl_->mcap.channels()) {
+    const auto schema = impl_->mcap.schemas().find(channel.schema_id);
+    topics.push_back(
+        {channel.topic, schema == impl_->mcap.schemas().end() ? "" : schema->second.name, impl_->mcap.messages_of(id)});
+  }
+  return topics;
+}
 
 const TraceInfo& TraceReader::info() const noexcept { return impl_->assembler->info(); }
 
@@ -123,6 +146,8 @@ Result<bool> TraceReader::next(TraceFrame& frame) try {
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
+
+TraceReader::Bytes TraceReader::bytes() const { return {impl_->mcap.bytes_read(), impl_->mcap.files().bytes()}; }
 
 bool TraceReader::cut_short() const noexcept { return impl_->mcap.cut_short(); }
 

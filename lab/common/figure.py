@@ -7,9 +7,11 @@
 
 matplotlib is imported where the first figure is drawn: scripts that draw nothing do without it.
 """
+import collections
 import io
 import math
 import os
+import re
 import sys
 import textwrap
 
@@ -72,7 +74,7 @@ def line(axes, x, y, number, label=None, low=None, high=None, marked=True):
     """A line with its spread: bars from the least to the largest where it is marked, else a band."""
     style = style_of(number, marked)
     if low is not None and marked:
-        below, above = [b - a for a, b in zip(low, y)], [b - a for a, b in zip(y, high)]
+        below, above = [max(b - a, 0) for a, b in zip(low, y)], [max(b - a, 0) for a, b in zip(y, high)]  # 0: a mean of equals, rounded
         return axes.errorbar(x, y, yerr=[below, above], label=label, capsize=2.5, elinewidth=0.8, **style)
     if low is not None:
         axes.fill_between(x, low, high, color=style["color"], alpha=0.2, linewidth=0)
@@ -121,7 +123,55 @@ def drawn(fig, ending):
     if fig._suptitle is not None:
         metadata["Title"] = fig._suptitle.get_text()  # what readers of screens tell
     fig.savefig(out, format=ending[1:], metadata=metadata)
-    return out.getvalue()
+    return compact(out.getvalue().decode()).encode() if ending == ".svg" else out.getvalue()
+
+
+def compact(svg):
+    """An SVG of a third of the size that looks the same: coordinates to 1/100 of a point, from each point to the next; short names, of what is
+    used alone; styles told once; no indentation."""
+    svg = re.sub(r'(?<= d=")[^"]*(?=")', lambda found: compact_path(found[0]), svg)
+    svg = re.sub(r'(?<= [xy]=")-?\d+\.\d+(?=")|(?<= [xy][12]=")-?\d+\.\d+(?=")|(?<=translate\()[-\d. ]+(?=\))',
+                 lambda found: " ".join(hundredths(round(100 * float(number))) for number in found[0].split()), svg)
+    used = {name: f"n{i}" for i, name in enumerate(dict.fromkeys(re.findall(r'(?<=href="#)[^"]+|(?<=url\(#)[^)]+', svg)))}
+    svg = re.sub(r' id="([^"]*)"', lambda found: f' id="{used[found[1]]}"' if found[1] in used else "", svg)
+    svg = re.sub(r'(?<=href="#)[^"]+|(?<=url\(#)[^)]+', lambda found: used[found[0]], svg)
+    styles = collections.Counter(re.findall(r' style="([^"]*)"', svg))
+    classes = {style: f"s{i}" for i, (style, count) in enumerate(styles.items()) if count > 2 and "url(" not in style}
+    svg = re.sub(r' style="([^"]*)"', lambda found: f' class="{classes[found[1]]}"' if found[1] in classes else found[0], svg)
+    told = "".join(f".{name}{{{style}}}" for style, name in classes.items())
+    return re.sub(r"\n\s+", "\n", svg.replace("</style>", told + "</style>", 1))
+
+
+def hundredths(number):
+    """The shortest text of so many hundredths."""
+    text = f"{abs(number) // 100}.{abs(number) % 100:02}".rstrip("0").rstrip(".")
+    return ("-" if number < 0 else "") + (text.removeprefix("0") if len(text) > 1 else text)
+
+
+def compact_path(path):
+    """Of M, L, Q, C and z with absolute coordinates; others, such as those that are compact already, stay as they are."""
+    pieces = re.findall(r"([A-Za-z])([^A-Za-z]*)", path.replace("Z", "z"))
+    if any(letter not in "MLQCz" for letter, _ in pieces):
+        return path
+    out, x, y = [], 0, 0
+    for letter, numbers in pieces:
+        values = [round(100 * float(number)) for number in numbers.replace(",", " ").split()]
+        count = {"M": len(values), "L": 2, "Q": 4, "C": 6, "z": 1}[letter]  # numbers of a step
+        if letter == "M":
+            out.append("M" + joined(values))
+            x, y = values[-2:]
+            continue
+        steps = []
+        for first in range(0, len(values), count):
+            steps += [value - (x, y)[i % 2] for i, value in enumerate(values[first:first + count])]
+            x, y = values[first + count - 2:first + count]
+        out.append("z" if letter == "z" else letter.lower() + joined(steps))
+    return "".join(out)
+
+
+def joined(values):
+    """A minus parts two numbers, too."""
+    return "".join(text if i == 0 or text.startswith("-") else " " + text for i, text in enumerate(map(hundredths, values)))
 
 
 def save(fig, path, replace=True):

@@ -22,12 +22,15 @@ def parser(what):
 
 
 def work(options):
-    folder = report.Folder(options.output, ("report.md", "signals.csv"), options.force)
+    folder = report.Folder(options.output, ("report.md", "signals.csv", "times.csv"), options.force)
     progress = program.Progress("bench signals", len(options.traces), not (options.quiet or options.no_progress))
     made = program.side_by_side(lambda trace: program.point("signals", trace=trace), options.traces, options.jobs, progress)
     recordings = [{"name": os.path.basename(trace)} | one for trace, one in zip(options.traces, made)]
     if options.output:
         folder.write_csv("signals.csv", HEAD.split(","), csv_rows(recordings))
+        folder.write_csv("times.csv", ["recording", "user", "signal", "within", "median_microseconds_per_sample"],
+                         [[recording["name"], *(signal[key] for key in ("user", "signal", "within")),
+                           f"{1e6 * signal['time_per_sample_s']:.2f}"] for recording in recordings for signal in recording["signals"]])
         folder.write("report.md", markdown(recordings))
     if options.json:
         report.print_json(as_json(recordings))

@@ -91,7 +91,7 @@ def as_json(studies, is_short):
     def of(study):
         verdicts = {verdict: sum(row["verdict"] == verdict for row in study["rows"]) for verdict in ("stable", "limit",
             "diverges")}
-        return {"study": study["study"], "title": study["title"]} | verdicts | {"rows": [of_row(row) for row in study["rows"]]}
+        return {"study": study["study"], "title": study["title"], "text": study["text"]} | verdicts | {"rows": [of_row(row) for row in study["rows"]]}
 
     return {"schema": "tactus.stability/1", "extent": "short" if is_short else "full", "context": report.context(),
             "studies": [of(study) for study in studies]}

@@ -178,8 +178,9 @@ Motion swinging_bodies(std::int64_t ticks) {
                             a * std::sin(w[2] * t + phase[2])};
       body.velocity = {a * w[0] * std::cos(w[0] * t + phase[0]), a * w[1] * std::cos(w[1] * t + phase[1]),
                        a * w[2] * std::cos(w[2] * t + phase[2])};
-      const double half = 0.3 * std::sin(w[0] * t + k);
+      const double half = 0.3 * std::sin(w[0] * t + k), turning = 0.6 * w[0] * std::cos(w[0] * t + k);
       body.pose.rotation = {std::cos(half), 0.6 * std::sin(half), 0, 0.8 * std::sin(half)};
+      body.angular_velocity = {0.6 * turning, 0, 0.8 * turning};
       frame.objects.push_back(body);
     }
   }

@@ -9,7 +9,7 @@ namespace tactus::sim {
 tl::expected<ObjectSurface, Diagnostic> read_object_surface(const std::string& file) {
   return tl::unexpected(Diagnostic{.error = fail(Errc::unsupported, "R-SRF-3").value(),
                                    .file = file,
-                                   .remedy = "this program was built without surface files; install libopenmesh-dev and build "
+                                   .remedy = "this program was built without surface files; install nlohmann-json3-dev and build "
                                              "with TACTUS_WITH_SURFACE=ON, or give the object a size"});
 }
 

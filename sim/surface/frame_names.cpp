@@ -221,6 +221,7 @@ tl::expected<std::vector<FrameFile>, Diagnostic> order_frames(std::vector<std::s
     if (files.empty()) return refused("R-SEQ-2", "no file is called like '" + series + "'; there is " + example);
   }
   std::vector<Name> names;
+  names.reserve(files.size());
   for (const std::string& file : files) names.push_back(split(file));
   take_signs(names);
   TACTUS_TRY(auto group, only_group(std::move(names)));
@@ -241,10 +242,12 @@ tl::expected<std::vector<FrameFile>, Diagnostic> order_frames(std::vector<std::s
   if (twice != frames.end()) return refused("R-SEQ-5", "the same number in " + twice[0].second + " and " + twice[1].second);
 
   std::vector<std::int64_t> values;
+  values.reserve(frames.size());
   for (const auto& [value, name] : frames) values.push_back(value);
   const std::int64_t step = step_of(values);
   note_numbers(values, step, places, notes);
   std::vector<FrameFile> out;
+  out.reserve(frames.size());
   for (const auto& [value, name] : frames)
     out.push_back({name, static_cast<double>(value - values[0]) / static_cast<double>(step)});
   return out;

@@ -17,10 +17,10 @@ struct FrameFile {
 
 /// Order files by the number in which their names differ, which may have a sign in front and a decimal point. A step is the difference that
 /// occurs most; missing numbers keep their time.
-/// in   names   of files in one folder, without it
+/// in   files   names in one folder, without it
 /// in   series  keep only names of this form, * stands for anything; empty: all
 /// err  R-SEQ-2 none is left; R-SEQ-5 they are several series, or a number is there twice
-tl::expected<std::vector<FrameFile>, Diagnostic> order_frames(std::vector<std::string> names, const std::string& series,
+tl::expected<std::vector<FrameFile>, Diagnostic> order_frames(std::vector<std::string> files, const std::string& series,
                                                               ReadNotes& notes);
 
 /// Hidden files, copies and backups, by their names: no frames.

@@ -16,6 +16,18 @@ namespace {
 constexpr std::size_t kMaxFileBytes = std::size_t{512} << 20;
 constexpr std::size_t kLongestQuote = 60;  // bytes of a line that an error repeats
 
+/// A format that others read, by the name's ending: what turns it into one that is read here.
+std::string converter_of(std::string_view format) {
+  if (format == ".fbx" || format == ".dae" || format == ".abc" || format == ".blend" || format == ".usd" || format == ".usdz" ||
+      format == ".3ds")
+    return "Write it as .obj or .ply with a modelling program: in Blender, File, Import, then File, Export.";
+  if (format == ".vtk" || format == ".vtu" || format == ".vtp" || format == ".xdmf" || format == ".inp")
+    return "Write it as .ply or .off: meshio convert FILE surface.ply.";
+  return {};
+}
+
+}  // namespace
+
 tl::expected<std::string, Diagnostic> read_bytes(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return broken(Errc::io, "R-SRF-1", "a folder");
@@ -32,18 +44,6 @@ tl::expected<std::string, Diagnostic> read_bytes(const std::string& path) {
   return text;
 }
 
-/// A format that others read, by the name's ending: what turns it into one that is read here.
-std::string converter_of(std::string_view format) {
-  if (format == ".glb" || format == ".gltf" || format == ".fbx" || format == ".dae" || format == ".abc" || format == ".blend" ||
-      format == ".usd" || format == ".usdz" || format == ".3ds")
-    return "Write it as .obj or .ply with a modelling program: in Blender, File, Import, then File, Export.";
-  if (format == ".vtk" || format == ".vtu" || format == ".vtp" || format == ".xdmf" || format == ".inp")
-    return "Write it as .ply or .off: meshio convert FILE surface.ply.";
-  return {};
-}
-
-}  // namespace
-
 tl::unexpected<Diagnostic> broken(Errc code, RuleName rule, std::string detail, std::string file) {
   return tl::unexpected(Diagnostic{.error = fail(code, rule).value(), .file = std::move(file), .detail = std::move(detail)});
 }
@@ -52,6 +52,11 @@ tl::unexpected<Diagnostic> broken_line(const LineReader& lines, std::string_view
   std::string detail = '\'' + std::string(lines.whole_line().substr(0, kLongestQuote)) + '\'';
   if (!why.empty()) detail += ": " + std::string(why);
   return tl::unexpected(Diagnostic{.error = fail(code, rule).value(), .line = lines.line_number(), .detail = std::move(detail)});
+}
+
+std::string folder_of(const std::string& path) {
+  const std::string parent = std::filesystem::path(path).parent_path().string();
+  return parent.empty() ? "." : parent;
 }
 
 std::string surface_format(const std::string& path) {

@@ -29,6 +29,13 @@ tl::unexpected<Diagnostic> broken(Errc code, RuleName rule, std::string detail, 
 tl::unexpected<Diagnostic> broken_line(const LineReader& lines, std::string_view why = {}, Errc code = Errc::malformed,
                                        RuleName rule = "R-SRF-4");
 
+/// All of a file.   err  R-SRF-1, R-SRF-2
+tl::expected<std::string, Diagnostic> read_bytes(const std::string& path);
+/// Where a file lies: "." at least.
+std::string folder_of(const std::string& path);
+/// y up becomes z up.
+constexpr Vec3 turned_up(const Vec3& p) noexcept { return {p.x, 0 - p.z, p.y}; }
+
 /// The name's ending in small letters.
 std::string surface_format(const std::string& path);
 

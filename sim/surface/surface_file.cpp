@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 
 #include <tactus/base/rule.h>
-#include <tactus/sim/surface/openmesh_io.h>
+#include <tactus/sim/surface/gltf_scene.h>
 #include <tactus/sim/surface/polygon_file.h>
 
 namespace tactus::sim {
@@ -37,7 +36,7 @@ std::string place_of(const Vec3& p) {
 /// Makes triangles of polygons. Errors name the file's own face, line and vertices.
 class SurfaceMaker {
  public:
-  SurfaceMaker(PolygonSoup&& soup, const SurfaceOptions& options) : soup_(std::move(soup)), options_(options) {}
+  SurfaceMaker(PolygonSoup&& soup, SurfaceOptions options) : soup_(std::move(soup)), options_(std::move(options)) {}
 
   tl::expected<SurfaceFile, Diagnostic> make() {
     for (std::size_t f = 0; f < soup_.polygons.size(); ++f) TACTUS_CHECK(check_corners(f));
@@ -205,28 +204,47 @@ tl::expected<SurfaceFile, Diagnostic> make_surface(PolygonSoup&& soup, const Sur
   return SurfaceMaker(std::move(soup), options).make();
 }
 
-tl::expected<SurfaceFile, Diagnostic> parse_surface(std::string_view bytes, std::string_view format,
-                                                    const SurfaceOptions& options) {
-  TACTUS_TRY(auto soup, parse_polygons(bytes, format));
+namespace {
+
+bool is_gltf(std::string_view format) noexcept { return format == ".gltf" || format == ".glb"; }
+
+tl::expected<SurfaceFile, Diagnostic> read_scene(std::string bytes, const std::string& folder, const SurfaceOptions& options) {
+  TACTUS_TRY(const auto scene, GltfScene::open(std::move(bytes), folder,
+                                               {.node = options.node,
+                                                .animation = {},
+                                                .moves = false,
+                                                .drop_degenerate = options.drop_degenerate,
+                                                .axes = options.axes}));
+  return scene.rest();
+}
+
+tl::expected<SurfaceFile, Diagnostic> make_turned(PolygonSoup&& soup, const SurfaceOptions& options) {
+  if (options.axes == Axes::y_up)
+    for (Vec3& v : soup.vertices) v = turned_up(v);
   return make_surface(std::move(soup), options);
 }
 
-tl::expected<SurfaceFile, Diagnostic> read_surface(const std::string& path, const SurfaceOptions& options) {
-  TACTUS_TRY(auto soup, read_polygons(path));
-  return make_surface(std::move(soup), options).map_error([&](Diagnostic e) {
-    e.file = path;
-    return e;
-  });
+}  // namespace
+
+tl::expected<SurfaceFile, Diagnostic> parse_surface(std::string_view bytes, std::string_view format,
+                                                    const SurfaceOptions& options) {
+  if (is_gltf(format)) return read_scene(std::string(bytes), "", options);
+  TACTUS_TRY(auto soup, parse_polygons(bytes, format));
+  return make_turned(std::move(soup), options);
 }
 
-tl::expected<void, Diagnostic> write_surface(const std::string& path, const TriMesh& mesh) {
-  const auto text = openmesh_write(mesh, surface_format(path));
-  if (!text) return broken(Errc::unsupported, "R-SRF-3", "", path);
-  std::ofstream out(path, std::ios::binary);
-  out << *text;
-  out.close();
-  if (!out) return broken(Errc::io, "R-SRF-1", "", path);
-  return {};
+tl::expected<SurfaceFile, Diagnostic> read_surface(const std::string& path, const SurfaceOptions& options) {
+  const auto named = [&](Diagnostic e) {
+    if (e.file.empty()) e.file = path;
+    return e;
+  };
+  if (is_gltf(surface_format(path))) {
+    auto bytes = read_bytes(path);
+    if (!bytes) return tl::unexpected(named(bytes.error()));
+    return read_scene(std::move(*bytes), folder_of(path), options).map_error(named);
+  }
+  TACTUS_TRY(auto soup, read_polygons(path));
+  return make_turned(std::move(soup), options).map_error(named);
 }
 
 }  // namespace tactus::sim

@@ -57,6 +57,7 @@ struct PlyHeader {
   bool has_format = false, binary = false, big = false, ended = false;
   std::vector<PlyElement> elements;
   std::size_t columns = 0;
+  ReadNotes notes;
 
   const PlyElement* find(std::string_view name) const noexcept {
     const auto found = std::find_if(elements.begin(), elements.end(), [&](const PlyElement& e) { return e.name == name; });
@@ -113,7 +114,11 @@ Read read_header_line(LineReader& lines, PlyHeader& header) {
   if (word == "element") return read_element(lines, header);
   if (word == "property") return read_property(lines, header);
   header.ended = word == "end_header";
-  return header.ended ? Read() : broken_line(lines);
+  if (header.ended) return {};
+  if (!header.has_format || !header.elements.empty()) return broken_line(lines);
+  header.notes.add("", "a line of the header that is not one of PLY is left out",  // as Blender 2.4 wrote its name
+                   "line " + std::to_string(lines.line_number()));
+  return {};
 }
 
 Read check_header(const PlyHeader& header, std::size_t bytes) {
@@ -137,6 +142,7 @@ class PlyBody {
 
   SoupResult read() {
     soup_.first_number = 0;
+    soup_.notes = header_.notes;
     for (const PlyElement& element : header_.elements) {
       if (element.columns.empty()) continue;
       for (std::size_t i = 0; i < element.count; ++i) TACTUS_CHECK(read_item(element, i));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -10,6 +11,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/sim/surface/frame_names.h>
+#include <tactus/sim/surface/gltf_scene.h>
 #include <tactus/sim/surface/polygon_file.h>
 
 namespace tactus::sim {
@@ -20,6 +22,11 @@ namespace fs = std::filesystem;
 bool is_surface(const std::string& format) noexcept {
   constexpr std::array<std::string_view, 4> kFormats{".obj", ".ply", ".off", ".stl"};
   return std::find(kFormats.begin(), kFormats.end(), format) != kFormats.end();
+}
+
+std::string spelt(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 6).ptr};
 }
 
 std::string counted(std::size_t files) { return std::to_string(files) + (files == 1 ? " file" : " files"); }
@@ -58,45 +65,96 @@ tl::expected<void, Diagnostic> check_formats(const std::vector<FrameFile>& frame
 
 }  // namespace
 
-tl::expected<SurfaceSequence, Diagnostic> SurfaceSequence::open(const std::string& folder, const SequenceOptions& options) {
+tl::expected<SurfaceSequence, Diagnostic> SurfaceSequence::open_scene(const std::string& path, const SequenceOptions& options) {
+  constexpr std::size_t kMostFrames = std::size_t{1} << 18, kMostPositions = std::size_t{1} << 31;
   SurfaceSequence out;
-  TACTUS_TRY(auto names, surfaces_in(folder, out.notes_));
+  out.files_ = {path};
+  out.period_ = options.period;
+  TACTUS_TRY(auto bytes, read_bytes(path));
+  TACTUS_TRY(auto scene, GltfScene::open(std::move(bytes), folder_of(path),
+                                         {.node = options.node,
+                                          .animation = options.animation,
+                                          .moves = true,
+                                          .drop_degenerate = options.drop_degenerate,
+                                          .axes = options.axes}));
+  const double frames = std::floor(scene.duration() / options.period + 1e-3) + 1;  // keys are in single precision
+  const std::size_t most = std::min(kMostFrames, kMostPositions / scene.rest().mesh.vertices.size());
+  if (!(frames <= static_cast<double>(most)))
+    return broken(Errc::limit_exceeded, "R-SEQ-7", spelt(scene.duration()) + " s, " + spelt(frames) + " frames");
+  for (std::size_t k = 0; static_cast<double>(k) < frames; ++k) out.offsets_.push_back(static_cast<double>(k));
+  out.take(SurfaceFile(scene.rest()));
+  if (scene.duration() > 0)
+    out.notes_.add(
+        "", "an animation of " + spelt(scene.duration()) + " s is sampled " + spelt(1 / options.period) + " times per second");
+  out.scene_ = std::make_shared<const GltfScene>(std::move(scene));
+  return out;
+}
+
+/// The shape at rest, and what was decided about it.
+void SurfaceSequence::take(SurfaceFile&& first) {
+  for (const ReadNote& note : first.notes.all()) notes_.add(note.where, note.what, note.first);
+  if (first.dropped_faces > 0)
+    notes_.add("", "faces without area in the first frame left out: " + std::to_string(first.dropped_faces));
+  if (first.unused_vertices > 0) notes_.add("", "vertices of no face left out: " + std::to_string(first.unused_vertices));
+  if (first.polygons > 0) notes_.add("", "faces cut into triangles: " + std::to_string(first.polygons));
+  used_ = std::move(first.vertex);
+  rest_ = std::move(first.mesh);
+}
+
+tl::expected<SurfaceSequence, Diagnostic> SurfaceSequence::open(const std::string& path, const SequenceOptions& options) {
+  std::error_code ignored;
+  if (const std::string format = surface_format(path);
+      (format == ".gltf" || format == ".glb") && !fs::is_directory(path, ignored))
+    return open_scene(path, options).map_error([&](Diagnostic e) {
+      if (e.file.empty()) e.file = path;
+      return e;
+    });
+  SurfaceSequence out;
+  out.turns_ = options.axes == Axes::y_up;
+  TACTUS_TRY(auto names, surfaces_in(path, out.notes_));
   if (options.series.empty()) {
     std::vector<FrameFile> all;
+    all.reserve(names.size());
     for (const std::string& name : names) all.push_back({name, 0});
-    TACTUS_CHECK(check_formats(all, folder));
+    TACTUS_CHECK(check_formats(all, path));
   }
   auto frames = order_frames(std::move(names), options.series, out.notes_);
   if (!frames) {
-    frames.error().file = folder;
+    frames.error().file = path;
     return tl::unexpected(frames.error());
   }
-  TACTUS_CHECK(check_formats(*frames, folder));
+  TACTUS_CHECK(check_formats(*frames, path));
   for (const FrameFile& frame : *frames) {
-    out.files_.push_back((fs::path(folder) / frame.name).string());
+    out.files_.push_back((fs::path(path) / frame.name).string());
     out.offsets_.push_back(frame.offset);
   }
   TACTUS_TRY(auto soup, read_polygons(out.files_[0]));
   out.polygons_ = soup.polygons;
   out.vertices_ = soup.vertices.size();
+  if (out.turns_)
+    for (Vec3& v : soup.vertices) v = turned_up(v);
   auto surface = make_surface(std::move(soup), {.drop_degenerate = options.drop_degenerate});
   if (!surface) {
     surface.error().file = out.files_[0];
     return tl::unexpected(surface.error());
   }
-  for (const ReadNote& note : surface->notes.all()) out.notes_.add(note.where, note.what, note.first);
-  if (surface->dropped_faces > 0)
-    out.notes_.add("", "faces without area in the first frame left out: " + std::to_string(surface->dropped_faces));
-  if (surface->unused_vertices > 0)
-    out.notes_.add("", "vertices of no face left out: " + std::to_string(surface->unused_vertices));
-  if (surface->polygons > 0) out.notes_.add("", "faces cut into triangles: " + std::to_string(surface->polygons));
-  out.used_ = std::move(surface->vertex);
-  out.rest_ = std::move(surface->mesh);
+  out.take(std::move(*surface));
   return out;
 }
 
 tl::expected<std::vector<Vec3>, Diagnostic> SurfaceSequence::positions(std::size_t frame) const {
-  const std::string& file = files_[frame];
+  const std::string& file = this->file(frame);
+  const auto is_in_range = [](const Vec3& p) { return std::abs(p.x) <= 1e6 && std::abs(p.y) <= 1e6 && std::abs(p.z) <= 1e6; };
+  if (scene_) {
+    auto out = scene_->positions(static_cast<double>(frame) * period_);
+    const auto wrong = std::find_if_not(out.begin(), out.end(), is_in_range);
+    if (wrong == out.end()) return out;
+    return tl::unexpected(Diagnostic{.error = fail(Errc::invalid, "R-SRF-8").value(),
+                                     .file = file,
+                                     .kind = "vertex",
+                                     .element = static_cast<std::uint64_t>(wrong - out.begin()),
+                                     .detail = "in frame " + std::to_string(frame)});
+  }
   TACTUS_TRY(const auto soup, read_polygons(file));
   if (soup.vertices.size() != vertices_)
     return broken(Errc::invalid, "R-SEQ-4",
@@ -110,8 +168,8 @@ tl::expected<std::vector<Vec3>, Diagnostic> SurfaceSequence::positions(std::size
   std::vector<Vec3> out;
   out.reserve(used_.size());
   for (const std::uint32_t v : used_) {
-    const Vec3& p = soup.vertices[v];
-    if (!(std::abs(p.x) <= 1e6 && std::abs(p.y) <= 1e6 && std::abs(p.z) <= 1e6))
+    const Vec3 p = turns_ ? turned_up(soup.vertices[v]) : soup.vertices[v];
+    if (!is_in_range(p))
       return tl::unexpected(Diagnostic{.error = fail(Errc::invalid, "R-SRF-8").value(),
                                        .file = file,
                                        .line = v < soup.vertex_lines.size() ? soup.vertex_lines[v] : 0,

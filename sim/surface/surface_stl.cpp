@@ -166,7 +166,7 @@ bool looks_like_text(std::string_view text) noexcept {
     const std::string_view word = lines.word();
     return is(word, "facet") || is(word, "endsolid");
   }
-  return text.size() < kHeader || text.find_first_of("\n") == std::string_view::npos;
+  return text.size() < kHeader || text.find('\n') == std::string_view::npos;
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Tetrahedral meshes in files: TetGen's .node with .ele, and Gmsh's .msh (versions 2 to 2.2, 4.0 and 4.1 as
 /// text, 2 to 2.2 and 4.1 as bytes of either order). Files are not trusted:
-/// numbers are whole and finite, and counts fit the remaining bytes before memory is reserved for them.
+/// numbers are whole and finite, and counts fit the remaining bytes before memory is reserved for them. What does not matter: in .msh other
+/// sections than $Nodes and $Elements, the lowest and highest number, entities and their dimensions, numbers and tags of elements, and what
+/// elements of other kinds hold, which are counted.
 ///
 /// rule      class           broken when
 /// R-TET-8   io              the file cannot be opened, read or written
@@ -41,7 +43,7 @@ tl::expected<TetFile, Diagnostic> read_tet_mesh(const std::string& path);
 
 /// The same from memory; the error's file is empty, ".node" or ".ele".   err  R-TET-9..16
 tl::expected<TetFile, Diagnostic> parse_node_ele(std::string_view node, std::string_view ele);
-tl::expected<TetFile, Diagnostic> parse_msh(std::string_view text);
+tl::expected<TetFile, Diagnostic> parse_msh(std::string_view bytes);
 
 /// Numbered from 0, with the shortest digits that read back as the same bits.
 void write_node(std::ostream& out, const TetMesh& mesh);

@@ -121,7 +121,11 @@ class MshReader {
         TACTUS_CHECK(words_.line());
         if (tags_first_) TACTUS_CHECK(read_tag());
         TACTUS_CHECK(words_.coordinates(mesh_.file.mesh.vertices.emplace_back()));
-        if (entity[2] == 0) TACTUS_CHECK(words_.end_of_line());  // else coordinates on the curve or surface follow
+        for (std::int64_t p = 0; entity[2] != 0 && p < std::min<std::int64_t>(entity[tags_first_ ? 1 : 0], 3); ++p) {
+          double on_entity = 0;  // coordinates on the curve or surface
+          TACTUS_CHECK(words_.number(on_entity));
+        }
+        TACTUS_CHECK(words_.end_of_line());
       }
     }
     if (mesh_.file.mesh.vertices.size() != count) return words_.broken(Errc::malformed, "R-TET-13");

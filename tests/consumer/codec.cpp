@@ -4,6 +4,7 @@
 #include <tactus/tactus.h>
 
 #include <cstdio>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -68,10 +69,27 @@ const char* send_and_receive() {
   return nullptr;
 }
 
+/// Also where this file is compiled with -ffast-math.
+const char* refuse_what_is_no_number() {
+  const auto scene = tactus::SceneBuilder().rigid("cube").build();
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+  std::vector<tactus::RigidSample> wrong(4);
+  wrong[0].pose.position.x = nan;
+  wrong[1].pose.rotation.w = nan;
+  wrong[2].pose.position.x = infinite;
+  wrong[3].velocity.x = nan;
+  for (const tactus::RigidSample& sample : wrong) {
+    auto sender = tactus::Sender::create(*scene);
+    if (sender->encode(0, {.objects = {&sample, 1}})) return "NaN or infinity is taken";
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 int main() {
   const char* complaint = send_and_receive();
+  if (complaint == nullptr) complaint = refuse_what_is_no_number();
   std::puts(complaint ? complaint : "packets of a cube and of a strip in layers, there and back");
   return complaint ? 1 : 0;
 }

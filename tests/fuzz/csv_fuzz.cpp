@@ -20,7 +20,8 @@ CsvMapping mapping(unsigned choice) {
   const auto& presets = csv_presets();
   if (choice % 4 < presets.size()) return presets[choice % 4].mapping;
   CsvMapping by_time;
-  by_time.time = "t";
+  by_time.time = choice & 4 ? "t,n" : "t";  // a date and a time of day
+  by_time.restarts = choice & 4;
   by_time.segment = choice & 8 ? "s" : "";
   by_time.position = {"x", "y", "z"};
   by_time.rotation = {"a", "b", "c", "d"};
@@ -51,7 +52,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::span<const std::uint8_t> text(data + 1, size - 1);
   Compressor zstd;
   if (data[0] & 16) text = zstd.compress(text).value();
-  const auto lines = static_cast<std::size_t>(std::count(data + 1, data + size, '\n')) + 1;
+  const auto lines = static_cast<std::size_t>(
+                         std::count_if(data + 1, data + size, [](std::uint8_t byte) { return byte == '\n' || byte == '\r'; })) +
+                     1;
   const auto done = import_csv(MemoryFile(text).path(), mapping(data[0]), "/dev/null");
   if (done) require(done->ticks.count() > 0 && (done->ticks.count() <= lines || (data[0] & 3) == 3) && done->segments > 0);
   else require(done.error().error.rule[0] == 'R' && (done.error().line <= lines + 1 || text[0] == 0x28));

@@ -77,6 +77,21 @@ def one_topic_of_many(folder):
     yield ["export", "csv", "b.mcap", "-o", "o.csv"], REFUSED
 
 
+def many_declarations(folder):
+    """All channels that a recording can have, each another one; then, in the second file of a bag, others under the same numbers."""
+    def recording(prefix):
+        schemas = b"".join(record(SCHEMA, struct.pack("<H", i) + text(f"{prefix}{i}") + text("ros2msg") + text("")) for i in range(1, 32000))
+        channels = b"".join(record(CHANNEL, struct.pack("<HH", i, 1) + text(f"/{prefix}{i}") + text("cdr") + text("")) for i in range(32000))
+        return mcap([schemas + channels])
+
+    (folder / "many").mkdir()
+    (folder / "many" / "a_0.mcap").write_bytes(recording("a"))
+    (folder / "many" / "a_1.mcap").write_bytes(recording("b"))
+    yield ["info", "many/a_0.mcap"], REFUSED
+    yield ["info", "many"], REFUSED
+    yield ["recover", "many", "-o", "o.mcap"], ENDS
+
+
 def stream_record(kind, payload):
     data = bytes([kind, len(payload)]) + payload
     return data + zlib.crc32(data).to_bytes(4, "little")
@@ -240,7 +255,7 @@ def long_header(folder):
 
 
 SMALL = (far_tick, deep_toml, names_of_files, plans, escapes, long_header, one_large_chunk, columns_of_a_table,
-         stored("models-of-many-meshes"))
+         many_declarations, stored("models-of-many-meshes"))
 LARGE = (many_chunks, empty_records, lines_of_a_table, one_topic_of_many, large_toml, endless_files, many_polygons,
          stored("baselines-of-a-large-mesh"))
 OF_TRACES = (escapes_of_traces,)

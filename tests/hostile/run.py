@@ -4,7 +4,8 @@
 
   run.py PROGRAM                 a seeded selection, 5 s of CPU time
   run.py PROGRAM --full          20 times as many damaged files and all bombs: about a minute of CPU time
-  run.py PROGRAM --runs N --seed S --only KIND    N damaged files of one kind: streams, traces, tables, scenes, plans, meshes, folders
+  run.py PROGRAM --runs N --seed S --only KIND    N damaged files of one kind: streams, traces, tables, scenes, plans, meshes, "scenes of others",
+                                 folders
   run.py PROGRAM --keep DIR      put what failed into DIR
   run.py --self-test             each kind of bad ending is found
   --sanitized                    the program has AddressSanitizer: no limit of memory, more time
@@ -28,6 +29,9 @@ import zlib
 
 import bombs
 import mutate
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tools"))
+import gltf_files  # noqa: E402
 
 CPU_S, MEMORY, LONGEST_LINE, LONGEST_MESSAGE = 10, 1 << 30, 2100, 8000
 POWER = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
@@ -131,7 +135,24 @@ def make_seeds(program, folder):
             "plans": [("toml", read("p.toml"))],
             "meshes": [("msh", read("slab.msh")), ("node", read("slab.node")), ("ele", read("slab.ele")), ("obj", tetrahedron.encode()),
                        ("off", off.encode()), ("ply", ply.encode())],
+            "scenes of others": [("glb", gltf(folder / "a.glb")), ("gltf", gltf(folder / "a.gltf"))],
             "folders": [("obj", (frames / "f1.obj").read_bytes())]}
+
+
+def gltf(path):
+    """A square that is bent, and that a joint moves."""
+    scene = gltf_files.Scene()
+    joints = scene.accessor([(0, 1, 0, 0)] * 4, "VEC4", 5121)
+    weights = scene.accessor([(0.5, 0.5, 0, 0)] * 4, "VEC4")
+    shift = scene.accessor(None, "VEC3", count=4, sparse={2: (0, 0, 1)})
+    scene.node(mesh=scene.mesh(gltf_files.SQUARE, gltf_files.SQUARE_INDICES, [shift], attributes={"JOINTS_0": joints, "WEIGHTS_0": weights}), skin=0)
+    scene.node(children=[2], name="root")
+    scene.node(translation=[1, 0, 0], rotation=[0, 0, 0, 1])
+    scene.json["scenes"][0]["nodes"] = [0, 1]
+    scene.add("skins", {"joints": [1, 2]})
+    scene.animate((0, "weights", [0, 0.2], [0, 1], "SCALAR", "STEP"), (2, "rotation", [0, 0.2], [(0, 0, 0, 1), (0, 0, 1, 0)], "VEC4", "LINEAR"),
+                  (1, "scale", [0, 0.2], [(0, 0, 0), (1, 1, 1), (0, 0, 0)] * 2, "VEC3", "CUBICSPLINE"))
+    return scene.write(path).read_bytes()
 
 
 def damaged(kind, form, data, rng):
@@ -139,7 +160,7 @@ def damaged(kind, form, data, rng):
         return mutate.mutated_stream(data, rng) if rng.randrange(3) else mutate.mutated(data, rng, mutate.BINARY)
     if form == "mcap":
         return mutate.mutated_mcap(mutate.unpacked_mcap(data), rng) if rng.randrange(3) else mutate.mutated(data, rng, mutate.BINARY)
-    data = mutate.mutated(data, rng, mutate.TEXT)
+    data = mutate.mutated(data, rng, mutate.BINARY if form == "glb" else mutate.TEXT)
     return mutate.zstd(["-1"], data) if kind == "tables" and rng.randrange(3) == 0 else data
 
 
@@ -174,6 +195,7 @@ def commands(kind, name, rng, program):
         "scenes": [["info", name], ["sim", name, "-o", "o.mcap", "--duration", "5ms"]],
         "plans": [["sweep", name, "--list"]] * 3 + [["sweep", name, "-o", "o", "-j", "1"]],
         "meshes": [["mesh", name, "-o", "o.msh"]],
+        "scenes of others": [["import", "mesh", name, "-o", "o.mcap"], ["import", "mesh", name, "-o", "o.mcap"], ["mesh", name, "-o", "o.msh"]],
         "folders": [["import", "mesh", "frames", "-o", "o.mcap"]],
     }
     return rng.choice(table[kind])
@@ -265,7 +287,7 @@ def main():
     if shutil.which("zstd") is None:
         parser.error("the program zstd is missing, which packs what is to be unpacked")
     runner, folders = Runner(options.program.resolve(), options.sanitized), Folders(options.keep)
-    kinds = [options.only] if options.only else ["streams", "traces", "tables", "scenes", "plans", "meshes", "folders"]
+    kinds = [options.only] if options.only else ["streams", "traces", "tables", "scenes", "plans", "meshes", "scenes of others", "folders"]
     with tempfile.TemporaryDirectory() as scratch:
         seeds = make_seeds(runner.program, pathlib.Path(scratch))
         seeds["home"] = pathlib.Path(scratch)

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/client/replica.h>
-
+/// What a client shows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 #include <random>
+#include <span>
 #include <string_view>
+#include <vector>
 
+#include <tactus/client/replica.h>
 #include "tests/unit/rigid_fixture.h"
 #include "tests/unit/smooth_motion.h"
 
@@ -16,6 +18,8 @@ namespace {
 
 using testing::along;
 using testing::scene_of;
+
+// ==== client replica ====
 
 /// Hands a replica updates of one object without a bitstream.
 class Feeder {
@@ -256,6 +260,112 @@ TEST(ClientReplicaOrder, AnOvertakenUpdateIsNotShown) {
     client.take({2, 420}, 445);
     for (std::int64_t tick = 445; tick < 500; ++tick) EXPECT_EQ(client.shown(tick), spared.shown(tick));
   }
+}
+
+// ==== client bend ====
+
+double distance(const RigidPose& a, const RigidPose& b) {
+  const unsigned exponent = scene_of(1)->grid.position;
+  return norm(to_pose(a, exponent).position - to_pose(b, exponent).position);
+}
+double angle(const RigidPose& a, const RigidPose& b) { return angle_between(to_pose(a, 22).rotation, to_pose(b, 22).rotation); }
+
+TEST(Bend, MeetsBothUpdatesAndTheMotionBetween) {
+  const SharedScene scene = scene_of(1);
+  const RigidPredictor predictor(*scene);
+  for (const std::int64_t length : {20, 60, 300}) {
+    const RigidState a = along(400, true), b = along(400 + length, true);
+    const RigidPose first = bend(*scene, a, b, 400), last = bend(*scene, a, b, 400 + length - 1);
+    EXPECT_EQ(first, (RigidPose{a.position, a.rotation}));
+    EXPECT_LT(distance(last, {b.position, b.rotation}), 2e-3);
+    double worst = 0, turned = 0, reckoned = 0;
+    for (std::int64_t tick = 400; tick < 400 + length; ++tick) {
+      const RigidState truth = along(tick, true);
+      const RigidPose shown = bend(*scene, a, b, tick), at{truth.position, truth.rotation};
+      worst = std::max(worst, distance(shown, at));
+      turned = std::max(turned, angle(shown, at));
+      reckoned = std::max(reckoned, distance(predictor.pose(a, tick), at));
+    }
+    const double t = 1e-3 * static_cast<double>(length);
+    EXPECT_LT(worst, 1e-5 + 8.1 * t * t * t * t / 384) << "of fourth order: the largest fourth derivative is 0.1 * 3^4 m/s^4";
+    EXPECT_LT(turned, 1e-4 + 12 * t * t * t * t / 384) << length;
+    EXPECT_GT(reckoned, 5 * worst) << "dead reckoning is of second order";
+  }
+}
+
+TEST(Bend, WithoutVelocitiesTheWayIsStraight) {
+  const SharedScene scene = scene_of(1);
+  const RigidState a = along(400, false), b = along(500, false);
+  const RigidPose from{a.position, a.rotation}, to{b.position, b.rotation};
+  for (std::int64_t tick = 400; tick < 500; ++tick) {
+    const double share = static_cast<double>(tick - 400) / 100;
+    const RigidPose shown = bend(*scene, a, b, tick);
+    EXPECT_NEAR(distance(from, shown), share * distance(from, to), 1e-6);
+    EXPECT_NEAR(angle(from, shown), share * angle(from, to), 1e-6);
+  }
+}
+
+// ==== client timeline ====
+
+Timeline::Update update(std::int64_t tick, std::uint64_t number) {
+  Timeline::Update out{number, {}};
+  out.state.tick = tick;
+  return out;
+}
+
+TEST(Timeline, BeginsWithTheInitialState) {
+  Timeline timeline;
+  RigidState initial;
+  initial.position = {1, 2, 3};
+  timeline.reset(initial);
+  for (const std::int64_t tick : {-5, 0, 1000}) {
+    EXPECT_EQ(timeline.around(tick).before.state, initial);
+    EXPECT_EQ(timeline.around(tick).before.number, 0u);
+    EXPECT_EQ(timeline.around(tick).after, nullptr);
+  }
+}
+
+TEST(Timeline, OrderOfArrivalDoesNotMatter) {
+  std::vector<Timeline::Update> updates{update(0, 0)};
+  for (std::uint64_t i = 1; i <= 200; ++i) updates.push_back(update(static_cast<std::int64_t>(i / 3 * 7), i));
+  std::mt19937_64 random(1);
+  for (int round = 0; round < 20; ++round) {
+    Timeline timeline;
+    timeline.reset({});
+    std::vector<Timeline::Update> shuffled(updates.begin() + 1, updates.end());
+    std::shuffle(shuffled.begin(), shuffled.end(), random);
+    for (const Timeline::Update& u : shuffled) timeline.add(u);
+    const std::span held = std::span(updates).last(Timeline::kMost);
+    for (std::int64_t tick = -1; tick < 480; ++tick) {
+      const auto after = std::ranges::find_if(held, [&](const auto& u) { return u.state.tick > tick; });
+      const auto [before, next] = timeline.around(tick);
+      EXPECT_EQ(before.number, after == held.begin() ? held.front().number : (after - 1)->number) << tick;
+      const auto following = after == held.begin() ? after + 1 : after;  // before all: the first is shown, at its own tick
+      EXPECT_EQ(next == nullptr ? 0 : next->number, following == held.end() ? 0 : following->number) << tick;
+    }
+  }
+}
+
+TEST(HeardPackets, KnowsTheNewestThousand) {
+  HeardPackets heard;
+  for (std::uint64_t number = 70000; number < 73000; ++number)
+    if (number % 500 != 7) heard.add(number);
+  EXPECT_TRUE(heard.all_between(72508, 72999));
+  EXPECT_TRUE(heard.all_between(72507, 72999)) << "the ends do not count";
+  EXPECT_FALSE(heard.all_between(72506, 72999));
+  EXPECT_TRUE(heard.all_between(72500, 72501)) << "nothing is between";
+  EXPECT_FALSE(heard.all_between(72500, 72508));
+  heard.add(72507);
+  EXPECT_TRUE(heard.all_between(72500, 72999)) << "an overtaken packet";
+  heard.add(72007);
+  EXPECT_TRUE(heard.all_between(71975, 72999)) << "the oldest heard is 1023 back";
+  EXPECT_FALSE(heard.all_between(71974, 72999));
+  heard.add(71000);
+  EXPECT_FALSE(heard.all_between(70999, 71001)) << "too long ago";
+  heard.add(100000);
+  EXPECT_FALSE(heard.all_between(99990, 100000));
+  heard.reset();
+  EXPECT_FALSE(heard.all_between(99999, 100001));
 }
 
 }  // namespace

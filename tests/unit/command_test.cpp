@@ -1,10 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/command.h"
-
+/// The command line.
 #include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/commands/input.h"
+#include "cli/options/headings.h"
+#include "cli/report/report.h"
 
 namespace tactus::cli {
 namespace {
+
+// ==== command ====
 
 /// What the command that was typed says.
 Failure failure_of(Program& program, const Action& action, std::vector<std::string> words) {
@@ -84,6 +96,95 @@ TEST(Command, TextsHoldWhatTheHelpHolds) {
   EXPECT_EQ(option.value, "WAY");
   EXPECT_EQ(option.choices, (std::vector<std::string>{"up", "down"}));
   EXPECT_TRUE(option.takes_value);
+}
+
+// ==== suggestion ====
+
+const std::vector<std::string> kNames{"encode", "decode", "sim", "serve", "--quiet"};
+
+TEST(Suggestion, OneSlipIsSeen) {
+  for (const char* typed : {"encod", "encodee", "enocde", "encide"})
+    EXPECT_EQ(did_you_mean(typed, kNames), ". Did you mean encode?") << typed;
+  EXPECT_EQ(did_you_mean("smi", kNames), ". Did you mean sim?");
+  EXPECT_EQ(did_you_mean("--quit", kNames), ". Did you mean --quiet?");
+}
+
+TEST(Suggestion, WhatIsFarFromEveryNameSuggestsNothing) {
+  for (const std::string& typed : {std::string("juggle"), std::string(), std::string("s"), std::string(100000, 'e')})
+    EXPECT_EQ(did_you_mean(typed, kNames), "");
+  EXPECT_EQ(did_you_mean("encode", {}), "");
+}
+
+// ==== rereadable input ====
+
+constexpr std::string_view kText = "once";
+
+/// What remains of a pipe, whose writer is gone.
+class Pipe {
+ public:
+  Pipe() {
+    int ends[2]{};
+    EXPECT_EQ(pipe(ends), 0);
+    EXPECT_EQ(write(ends[1], kText.data(), kText.size()), static_cast<ssize_t>(kText.size()));
+    close(ends[1]);
+    end_ = ends[0];
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  ~Pipe() { close(end_); }
+  std::string path() const { return "/proc/self/fd/" + std::to_string(end_); }
+
+ private:
+  int end_ = -1;
+};
+
+TEST(RereadableInput, APipeIsReadAgainAndAgain) {
+  const Pipe pipe;
+  const auto input = RereadableInput::open(pipe.path(), kText.size());
+  ASSERT_TRUE(input);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(read_file(input->path()), std::string(kText));
+}
+
+TEST(RereadableInput, APipeLongerThanTheLimitIsRefused) {
+  const Pipe pipe;
+  EXPECT_FALSE(RereadableInput::open(pipe.path(), kText.size() - 1));
+  const auto endless = RereadableInput::open("/dev/zero", 1 << 20);
+  ASSERT_FALSE(endless);
+  EXPECT_EQ(endless.error().text, "/dev/zero: more than 1 MiB from a pipe");
+}
+
+// ==== step times ====
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+TEST(StepTimes, StepsOfManySecondsAreWhole) {
+  StepTimes times;
+  for (const std::int64_t seconds : {7, 90, 20'000}) times.add({seconds * kSecond, 2 * seconds * kSecond});
+  EXPECT_DOUBLE_EQ(times.quantile(TimeOf::wall, 0.5), 90);
+  EXPECT_DOUBLE_EQ(times.quantile(TimeOf::wall, 1), 20'000);
+  EXPECT_DOUBLE_EQ(times.quantile(TimeOf::cpu, 0), 14);
+  EXPECT_DOUBLE_EQ(times.total(TimeOf::wall), 20'097);
+  EXPECT_DOUBLE_EQ(times.total(TimeOf::cpu), 40'194);
+}
+
+TEST(StepTimes, WaitingTakesWallTimeButNoCpuTime) {
+  using namespace std::chrono_literals;
+  StepTimes times;
+  times.measure([] { return std::this_thread::sleep_for(50ms), 0; });
+  EXPECT_GE(times.total(TimeOf::wall), 0.05);
+  EXPECT_LT(times.total(TimeOf::cpu), 0.05);
+}
+
+TEST(StepTimes, WorkOfEveryThreadTakesCpuTime) {
+  StepTimes times;
+  times.measure([] {
+    std::thread([] {
+      timespec used{};
+      while (used.tv_nsec < 10'000'000) clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+    }).join();
+    return 0;
+  });
+  EXPECT_GE(times.total(TimeOf::cpu), 0.01);
 }
 
 }  // namespace

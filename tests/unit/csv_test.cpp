@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include <tactus/trace/byte_source.h>
 #include <tactus/trace/csv_time.h>
 #include <tactus/trace/csv_units.h>
-#include "tests/unit/trace_fixture.h"
+#include "tests/unit/csv_fixture.h"
 
 namespace tactus {
 namespace {
@@ -21,44 +19,6 @@ namespace {
 const CsvMapping& preset(std::string_view name) {
   const auto& all = csv_presets();
   return std::find_if(all.begin(), all.end(), [&](const CsvPreset& p) { return p.name == name; })->mapping;
-}
-
-void write_text(const std::string& path, std::string_view text) { std::ofstream(path, std::ios::binary) << text; }
-
-struct Outcome {
-  TraceInfo info;
-  std::vector<TraceFrame> frames;
-  CsvImport done;
-  std::string rule;  // of the error, if there was one
-  Diagnostic error;
-};
-
-Outcome import(std::string_view text, const CsvMapping& mapping) {
-  const TempFile csv, trace;
-  write_text(csv.path(), text);
-  const auto done = import_csv(csv.path(), mapping, trace.path());
-  Outcome outcome;
-  if (!done) {
-    EXPECT_FALSE(std::filesystem::exists(trace.path()));
-    outcome.error = done.error();
-    outcome.rule = outcome.error.error.rule;
-    return outcome;
-  }
-  outcome.done = *done;
-  auto reader = TraceReader::open(trace.path());
-  EXPECT_TRUE(reader);
-  outcome.info = reader->info();
-  Reading reading = read_all(std::move(reader));
-  EXPECT_FALSE(reading.error);
-  outcome.frames = std::move(reading.frames);
-  return outcome;
-}
-
-CsvMapping xyz() {
-  CsvMapping mapping;
-  mapping.position = {"x", "y", "z"};
-  mapping.tick_rate = 100;
-  return mapping;
 }
 
 constexpr std::string_view kTosses =
@@ -71,7 +31,7 @@ constexpr std::string_view kTosses =
     "0.4019124,-2.376132\n";
 
 TEST(Csv, CubeTosses) {
-  const Outcome outcome = import(kTosses, preset("cube-tosses"));
+  const Imported outcome = import(kTosses, preset("cube-tosses"));
   ASSERT_EQ(outcome.rule, "");
   EXPECT_EQ(outcome.done.ticks.count(), 3u);
   EXPECT_EQ(outcome.done.segments, 2u);
@@ -111,7 +71,7 @@ CsvMapping top(AngularVelocityFrame frame) {
 }
 
 TEST(Csv, AngularVelocityOfTheBodyFrameIsTurnedIntoTheWorldFrame) {
-  const Outcome outcome = import(lying_top(), top(AngularVelocityFrame::body));
+  const Imported outcome = import(lying_top(), top(AngularVelocityFrame::body));
   ASSERT_EQ(outcome.rule, "");
   for (const TraceFrame& frame : outcome.frames) EXPECT_LT(norm(frame.objects[0].angular_velocity - Vec3{0, -3, 0}), 1e-9);
   EXPECT_EQ(outcome.done.angular_velocity.rows, 19u);
@@ -122,7 +82,7 @@ TEST(Csv, AngularVelocityOfTheBodyFrameIsTurnedIntoTheWorldFrame) {
 }
 
 TEST(Csv, AngularVelocityInAnotherFrameContradictsTheRotations) {
-  const Outcome outcome = import(lying_top(), top(AngularVelocityFrame::world));
+  const Imported outcome = import(lying_top(), top(AngularVelocityFrame::world));
   ASSERT_EQ(outcome.rule, "");
   EXPECT_EQ(outcome.frames[3].objects[0].angular_velocity, (Vec3{0, 0, 3}));
   EXPECT_TRUE(outcome.done.angular_velocity.is_off());
@@ -142,7 +102,7 @@ TEST(Csv, ZstdInputGivesTheSameTrace) {
   const std::span<const std::uint8_t> raw(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   const auto compressed = compressor.compress(raw).value();
   const std::string packed(compressed.begin(), compressed.end());
-  const Outcome a = import(text, preset("cube-tosses")), b = import(packed, preset("cube-tosses"));
+  const Imported a = import(text, preset("cube-tosses")), b = import(packed, preset("cube-tosses"));
   ASSERT_EQ(a.frames.size(), 5003u);
   ASSERT_EQ(b.frames.size(), 5003u);
   for (std::size_t i = 0; i < a.frames.size(); ++i) ASSERT_EQ(image(a.frames[i]), image(b.frames[i]));
@@ -165,7 +125,7 @@ TEST(Csv, ExportReadsBackToTheSameBits) {
   const auto rows = export_csv(*reader, text);
   ASSERT_TRUE(rows);
   EXPECT_EQ(rows->count(), 300u);
-  const Outcome outcome = import(text.str(), preset("tactus"));
+  const Imported outcome = import(text.str(), preset("tactus"));
   ASSERT_EQ(outcome.rule, "") << to_string(outcome.error);
   EXPECT_EQ(outcome.info.tick_rate, 148u);
   EXPECT_EQ(outcome.info.users, recording.info.users);
@@ -197,7 +157,7 @@ TEST(Csv, AForceThatTheTraceDoesNotKnowHasNoColumns) {
       EXPECT_EQ(has("/users/left/server_force_"), known == KnownForces::server);
       EXPECT_TRUE(has("/users/right/force_") && has("/users/right/server_force_"));
     }
-    const Outcome outcome = import(text.str(), preset("tactus"));
+    const Imported outcome = import(text.str(), preset("tactus"));
     ASSERT_EQ(outcome.rule, "") << to_string(outcome.error);
     EXPECT_EQ(outcome.info.users, recording.info.users);
     ASSERT_EQ(outcome.frames.size(), 3u);
@@ -218,7 +178,7 @@ TEST(Csv, AUserHasOneForceAtLeastAndAllOfIt) {
                static_cast<char>(std::tolower(forces[0]));
       row += ",1";
     }
-    const Outcome outcome = import(names + '\n' + row + '\n', preset("tactus"));
+    const Imported outcome = import(names + '\n' + row + '\n', preset("tactus"));
     return outcome.rule + (outcome.rule.empty() ? "" : ", " + place_of(outcome.error));
   };
   EXPECT_EQ(place("xyz"), "");
@@ -231,7 +191,7 @@ TEST(Csv, AUserHasOneForceAtLeastAndAllOfIt) {
 }
 
 TEST(Csv, KinaestheticLayout) {
-  const Outcome outcome = import(
+  const Imported outcome = import(
       "human_position_x,human_position_y,human_position_z,human_velocity_x,human_velocity_y,human_velocity_z,robot_position_x,"
       "robot_position_y,robot_position_z,robot_force_x,robot_force_y,robot_force_z\n"
       "0.1,0.2,0.3,9,9,9,1,2,3,-1,-2,-3\n0.1,0.2,0.4,9,9,9,1,2,3.5,-1,-2,-4\n",
@@ -260,7 +220,7 @@ TEST(Csv, MotionIsDerivedButNotAcrossSegments) {
     const double angle = 0.01 * i;  // about z
     text << (i < 3 ? "a" : "b") << ',' << 20 * i << ",0,0," << std::cos(angle / 2) << ",0,0," << std::sin(angle / 2) << '\n';
   }
-  const Outcome outcome = import(text.str(), mapping);
+  const Imported outcome = import(text.str(), mapping);
   ASSERT_EQ(outcome.rule, "");
   EXPECT_EQ(outcome.done.segments, 2u);
   ASSERT_EQ(outcome.frames.size(), 6u);
@@ -276,7 +236,7 @@ TEST(Csv, RateAndTicksFollowTheTimeColumn) {
   mapping.tick_rate = 0;
   mapping.time = "t";
   mapping.segment = "s";
-  const Outcome outcome =
+  const Imported outcome =
       import("t,s,x,y,z\n5.000,1,0,0,0\n5.002,1,0,0,0\n5.0039,1,0,0,0\n5.010,1,0,0,0\n0,2,0,0,0\n0.002,2,0,0,0\n", mapping);
   ASSERT_EQ(outcome.rule, "");
   EXPECT_EQ(outcome.info.tick_rate, 500u);
@@ -286,13 +246,13 @@ TEST(Csv, RateAndTicksFollowTheTimeColumn) {
   EXPECT_EQ(outcome.done.ticks.count(), 6u);
   EXPECT_EQ(outcome.done.ticks.length(), 8u);
   mapping.resample = false;
-  const Outcome back = import("t,s,x,y,z\n1.0,1,0,0,0\n1.002,1,0,0,0\n1.002,1,0,0,0\n1.004,1,0,0,0\n", mapping);
+  const Imported back = import("t,s,x,y,z\n1.0,1,0,0,0\n1.002,1,0,0,0\n1.002,1,0,0,0\n1.004,1,0,0,0\n", mapping);
   EXPECT_EQ(back.rule, "R-CSV-5");
   EXPECT_EQ(back.error.line, 4u);
 }
 
 TEST(Csv, LineEndsQuotesBlanksAndByteOrderMark) {
-  const Outcome outcome = import("\xEF\xBB\xBF\"x\" , y,z\r\n1, 2 ,\"3\"\r\n\r\n4,5,6\r\n", xyz());
+  const Imported outcome = import("\xEF\xBB\xBF\"x\" , y,z\r\n1, 2 ,\"3\"\r\n\r\n4,5,6\r\n", xyz());
   ASSERT_EQ(outcome.rule, "");
   ASSERT_EQ(outcome.frames.size(), 2u);
   EXPECT_EQ(outcome.frames[0].objects[0].pose.position, (Vec3{1, 2, 3}));
@@ -301,7 +261,7 @@ TEST(Csv, LineEndsQuotesBlanksAndByteOrderMark) {
 
 TEST(Csv, SemicolonsTabsDecimalCommasAndComments) {
   const auto check = [](std::string_view text) {
-    const Outcome outcome = import(text, xyz());
+    const Imported outcome = import(text, xyz());
     ASSERT_EQ(outcome.rule, "") << text;
     ASSERT_EQ(outcome.frames.size(), 2u) << text;
     EXPECT_EQ(outcome.frames[0].objects[0].pose.position, (Vec3{1.5, -2e-3, 3})) << text;
@@ -326,7 +286,7 @@ TEST(Csv, SemicolonsTabsDecimalCommasAndComments) {
 
 TEST(Csv, MistakesAreNamedWithTheirPlace) {
   const auto check = [](std::string_view text, std::string_view rule, std::string_view place) {
-    const Outcome outcome = import(text, xyz());
+    const Imported outcome = import(text, xyz());
     EXPECT_EQ(outcome.rule, rule) << text;
     EXPECT_EQ(place_of(outcome.error), place) << text;
   };
@@ -346,10 +306,10 @@ TEST(Csv, AComponentThatTheTableLacksIsZero) {
   CsvMapping plane;
   plane.device = {"x", kZeroColumn, "y"};
   plane.tick_rate = 100;
-  const Outcome out = import("x,y\n1,2\n3,4\n", plane);
+  const Imported out = import("x,y\n1,2\n3,4\n", plane);
   ASSERT_EQ(out.frames.size(), 2u);
   EXPECT_EQ(out.frames[1].users[0].device.position, (Vec3{3, 0, 4}));
-  const Outcome named = import("x,y,0\n1,2,5\n", plane);
+  const Imported named = import("x,y,0\n1,2,5\n", plane);
   ASSERT_EQ(named.frames.size(), 1u);
   EXPECT_EQ(named.frames[0].users[0].device.position, (Vec3{1, 5, 2})) << "a column of this name";
   plane.segment = kZeroColumn;
@@ -381,7 +341,7 @@ TEST(Csv, TheTicksThatAClientShowsAreKept) {
   auto reader = TraceReader::open(trace.path());
   ASSERT_TRUE(export_csv(*reader, text));
   EXPECT_TRUE(text.str().starts_with("tick,time_s,shown_tick,/objects/cube/dof"));
-  const Outcome outcome = import(text.str(), preset("tactus"));
+  const Imported outcome = import(text.str(), preset("tactus"));
   ASSERT_EQ(outcome.frames.size(), 3u) << outcome.rule;
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(image(outcome.frames[i]), image(recording.frames[i])) << i;
 }
@@ -425,9 +385,9 @@ TEST(Csv, TactusLayoutDistrustsDevices) {
       "/users/u/stiffness,/users/u/device_qw,/users/u/device_qx,/users/u/device_qy,/users/u/device_qz,/users/u/device_buttons,"
       "/users/u/device_time_ns\n";
   const auto check = [&](const std::string& contact, const std::string& device, std::string_view rule, std::string_view place) {
-    const Outcome outcome = import(std::string(kNames) + "0,0,63,0,0,0,1,0,0,0,0,0,0,0,0,0," + contact +
-                                       ",0,0,0,0,0,0,0,0,0,0,0,0,0,0,1,100," + device + "\n",
-                                   preset("tactus"));
+    const Imported outcome = import(std::string(kNames) + "0,0,63,0,0,0,1,0,0,0,0,0,0,0,0,0," + contact +
+                                        ",0,0,0,0,0,0,0,0,0,0,0,0,0,0,1,100," + device + "\n",
+                                    preset("tactus"));
     EXPECT_EQ(outcome.rule, rule) << device;
     EXPECT_EQ(place_of(outcome.error), place) << device;
   };
@@ -448,12 +408,12 @@ TEST(Csv, ARotationOfNoLengthIsMissing) {
   const std::string_view second = "0.4373504,0.2366988,0.8673623,-0.01951942";
   tosses.replace(tosses.find(second), second.size(), "0,0,0,0");
   CsvMapping mapping = preset("cube-tosses");
-  const Outcome held = import(tosses, mapping);
+  const Imported held = import(tosses, mapping);
   ASSERT_EQ(held.frames.size(), 3u) << held.rule;
   EXPECT_EQ(held.frames[1].objects[0].pose.rotation, held.frames[0].objects[0].pose.rotation);
   EXPECT_FALSE(held.done.notes.all().empty());
   mapping.strict = true;
-  const Outcome outcome = import(tosses, mapping);
+  const Imported outcome = import(tosses, mapping);
   EXPECT_EQ(outcome.rule, "R-CSV-4");
   EXPECT_EQ(place_of(outcome.error), "line 3, column qw");
 }
@@ -498,14 +458,6 @@ TEST(Csv, NamesTellUnitsAndAxes) {
   EXPECT_EQ(axis_in_name("a"), 0);
 }
 
-/// What the notes of an import say, without place.
-std::vector<std::string> notes_of(const Outcome& outcome) {
-  std::vector<std::string> out;
-  for (const ReadNote& note : outcome.done.notes.all())
-    if (note.where.empty()) out.push_back(note.what);
-  return out;
-}
-
 TEST(Csv, NotesCountWhatWasDecided) {
   std::string table = "t,x,y,z\n";
   for (int i = 0; i < 100; ++i) {
@@ -515,7 +467,7 @@ TEST(Csv, NotesCountWhatWasDecided) {
   }
   CsvMapping mapping = xyz();
   mapping.time = "t";
-  const Outcome outcome = import(table, mapping);
+  const Imported outcome = import(table, mapping);
   ASSERT_EQ(outcome.frames.size(), 70u) << outcome.rule;
   EXPECT_EQ(outcome.frames.back().tick, 99);
   EXPECT_EQ(notes_of(outcome),
@@ -526,7 +478,7 @@ TEST(Csv, NotesCountWhatWasDecided) {
 
 TEST(Csv, MissingValuesArePutBetweenTheirNeighbours) {
   for (const char* word : {"", "nan", "inf", "-", "NA", "null"}) {
-    const Outcome outcome = import(std::string("x,y,z\n1,2,3\n4,") + word + ",6\n5,4,7\n", xyz());
+    const Imported outcome = import(std::string("x,y,z\n1,2,3\n4,") + word + ",6\n5,4,7\n", xyz());
     ASSERT_EQ(outcome.frames.size(), 3u) << word << outcome.rule;
     EXPECT_EQ(outcome.frames[1].objects[0].pose.position, (Vec3{3, 3, 5})) << word;
   }
@@ -543,7 +495,7 @@ TEST(Csv, EveryOptionOfTheMappingChangesTheTraceOrIsRefused) {
   const auto trace_of = [&](auto change) {
     CsvMapping mapping = plain;
     change(mapping);
-    const Outcome outcome = import(kTable, mapping);
+    const Imported outcome = import(kTable, mapping);
     std::string all = outcome.rule + std::to_string(outcome.info.tick_rate);
     for (const TraceFrame& frame : outcome.frames) {
       const auto& bytes = image(frame);

@@ -23,25 +23,24 @@ std::vector<Json> alternatives(const Json& schema) {
 }
 
 /// A value with every property that a schema knows, none equal to another or to what is left out.
-Json sample(const Json& property, const Json& root, int& next) {
-  const Json schema = resolved(property, root);
+Json sample(const Json& schema, int& next) {
   if (schema.contains("const")) return schema["const"];
   if (schema.contains("enum"))
     return schema["enum"].back() == schema.value("x-omit", Json()) ? schema["enum"][0] : schema["enum"].back();
-  if (schema.contains("oneOf")) return sample(schema["oneOf"][0], root, next);
+  if (schema.contains("oneOf")) return sample(schema["oneOf"][0], next);
   const std::string type = schema["type"].is_array() ? schema["type"][0] : schema["type"];
   if (type == "boolean") return schema.value("x-omit", Json(false)) == Json(false);
   if (type == "string") return "text" + std::to_string(++next);
   if (type == "integer" || type == "number") return schema.value("maximum", 1) == 0 ? -++next : ++next;
   if (type == "array") {
     Json out = Json::array();
-    for (int i = 0; i < std::max(1, schema.value("minItems", 1)); ++i) out.push_back(sample(schema["items"], root, next));
+    for (int i = 0; i < std::max(1, schema.value("minItems", 1)); ++i) out.push_back(sample(schema["items"], next));
     return out;
   }
   Json out = Json::object();
   const Json members = schema.value("properties", Json::object());
-  for (const auto& [key, part] : members.items()) out[key] = sample(part, root, next);
-  if (const Json other = schema.value("additionalProperties", Json()); other.is_object()) out["more"] = sample(other, root, next);
+  for (const auto& [key, part] : members.items()) out[key] = sample(part, next);
+  if (const Json other = schema.value("additionalProperties", Json()); other.is_object()) out["more"] = sample(other, next);
   return out;
 }
 
@@ -59,15 +58,14 @@ std::string table_of(const Json& value, const Json& schema) {
 using Look = std::function<void(const Json& property, Json& around, const std::string& key, const std::string& path)>;
 
 /// Each property of a schema that is seen, with the object of `value` around it.
-void for_each_property(const Json& schema, Json& value, const Json& root, const std::string& path, const Look& look) {
-  const Json followed = resolved(schema, root);
-  if (followed.value("x-hidden", false)) return;
-  if (value.is_array() && !value.empty()) return for_each_property(followed["items"], value[0], root, path + "/0", look);
+void for_each_property(const Json& schema, Json& value, const std::string& path, const Look& look) {
+  if (schema.value("x-hidden", false)) return;
+  if (value.is_array() && !value.empty()) return for_each_property(schema["items"], value[0], path + "/0", look);
   if (!value.is_object()) return;
-  const Json members = followed.value("properties", Json::object());
+  const Json members = schema.value("properties", Json::object());
   for (const auto& [key, property] : members.items()) {
-    look(resolved(property, root), value, key, path + "/" + key);
-    if (value.contains(key)) for_each_property(property, value[key], root, path + "/" + key, look);
+    look(property, value, key, path + "/" + key);
+    if (value.contains(key)) for_each_property(property, value[key], path + "/" + key, look);
   }
 }
 
@@ -81,14 +79,13 @@ TEST(Printer, EveryPropertyHasATitleAndEveryNumberAUnit) {
   for (const char* name : kReports)
     for (const Json& one : alternatives(schema(name))) {
       int next = 1;
-      Json value = sample(one, schema(name), next);
-      for_each_property(
-          one, value, schema(name), name, [](const Json& property, Json&, const std::string&, const std::string& path) {
-            EXPECT_TRUE(property.contains("title")) << path;
-            const bool is_structured = property.value("type", Json()) == "object" || property.value("type", Json()) == "array";
-            EXPECT_TRUE(property.value("title", "") != "" || is_structured) << path;
-            EXPECT_TRUE(!is_number(property) || property.contains("x-unit") != property.contains("x-count")) << path;
-          });
+      Json value = sample(one, next);
+      for_each_property(one, value, name, [](const Json& property, Json&, const std::string&, const std::string& path) {
+        EXPECT_TRUE(property.contains("title")) << path;
+        const bool is_structured = property.value("type", Json()) == "object" || property.value("type", Json()) == "array";
+        EXPECT_TRUE(property.value("title", "") != "" || is_structured) << path;
+        EXPECT_TRUE(!is_number(property) || property.contains("x-unit") != property.contains("x-count")) << path;
+      });
     }
 }
 
@@ -97,19 +94,18 @@ TEST(Printer, EveryPropertyThatIsNotHiddenIsPrinted) {
   for (const char* name : kReports)
     for (const Json& one : alternatives(schema(name))) {
       int next = 1, looked = 0;
-      const Json whole = sample(one, schema(name), next);
+      const Json whole = sample(one, next);
       const std::string table = table_of(whole, schema(name));
       Json value = whole;
-      for_each_property(one, value, schema(name), name,
-                        [&](const Json& property, Json& around, const std::string& key, const std::string& path) {
-                          if (property.value("x-hidden", false)) return;
-                          const Json kept = around;
-                          around.erase(key);
-                          EXPECT_TRUE(key == "kind" || table_of(value, schema(name)) != table)
-                              << path;  // kind chooses the alternative
-                          around = kept;
-                          ++looked;
-                        });
+      for_each_property(
+          one, value, name, [&](const Json& property, Json& around, const std::string& key, const std::string& path) {
+            if (property.value("x-hidden", false)) return;
+            const Json kept = around;
+            around.erase(key);
+            EXPECT_TRUE(key == "kind" || table_of(value, schema(name)) != table) << path;  // kind chooses the alternative
+            around = kept;
+            ++looked;
+          });
       EXPECT_GE(looked, 4) << name;
     }
 }

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/session/congestion.h>
-
+/// How much may be sent, and what is sent again.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
+#include <set>
+
+#include <tactus/session/congestion.h>
+#include <tactus/session/fragments.h>
+#include <tactus/session/timing.h>
+#include "tests/property/allocated.h"
 
 namespace tactus {
 namespace {
+
+// ==== session congestion ====
 
 constexpr std::uint64_t kPeriod = 500'000;  // [us]
 
@@ -132,6 +141,268 @@ TEST(Congestion, ANewEpochBeginsAtItsBounds) {
   run.periods(4, 0);
   EXPECT_EQ(run.congestion.so_far().time, before);
   EXPECT_EQ(run.congestion.so_far().widest, 4);
+}
+
+// ==== session token bucket ====
+
+/// Bits that pass in ten seconds if a datagram of this size is offered each `every` microseconds.
+std::int64_t passed(std::uint64_t rate, std::int64_t bits, std::uint64_t every) {
+  TokenBucket bucket(rate);
+  std::int64_t out = 0;
+  for (std::uint64_t now = 1'000'000; now < 11'000'000; now += every) {
+    if (!bucket.is_open(now)) continue;
+    bucket.take(bits);
+    out += bits;
+  }
+  return out;
+}
+
+TEST(TokenBucket, LetsItsRatePass) {
+  for (const std::uint64_t rate : {6'000u, 200'000u, 10'000'000u}) {
+    const std::int64_t ten_seconds = 10 * static_cast<std::int64_t>(rate), burst = ten_seconds / 200;
+    const std::int64_t bits = 8 * 300;
+    EXPECT_LE(passed(rate, bits, 100), ten_seconds + burst + bits) << "what it holds, and one datagram too many";
+    EXPECT_GE(passed(rate, bits, 100), ten_seconds - bits);
+  }
+  EXPECT_EQ(passed(200'000, 800, 10'000), 1000 * 800) << "what is less passes at once";
+}
+
+TEST(TokenBucket, HoldsWhat50MillisecondsBring) {
+  TokenBucket bucket(1'000'000);
+  ASSERT_TRUE(bucket.is_open(3'600'000'000));
+  std::int64_t burst = 0;
+  for (; bucket.is_open(3'600'000'000); burst += 1000) bucket.take(1000);
+  EXPECT_EQ(burst, 50'000);
+  EXPECT_FALSE(bucket.is_open(3'600'000'000));
+  EXPECT_TRUE(bucket.is_open(3'600'000'001));
+}
+
+TEST(TokenBucket, ADebtIsPaid) {
+  TokenBucket bucket(1'000'000);
+  bucket.take(60'000);
+  EXPECT_FALSE(bucket.is_open(10'000));
+  EXPECT_TRUE(bucket.is_open(10'001));
+}
+
+TEST(TokenBucket, WithoutARateAllPasses) {
+  TokenBucket bucket(0);
+  for (std::uint64_t now = 0; now < 1000; ++now) {
+    ASSERT_TRUE(bucket.is_open(now));
+    bucket.take(std::int64_t{1} << 40);
+  }
+}
+
+TEST(TokenBucket, TheLargestRateDoesNotOverflow) {
+  TokenBucket bucket(1'000'000'000'000);
+  for (std::uint64_t now = 0; now < 10'000'000; now += 49'999) {
+    ASSERT_TRUE(bucket.is_open(now));
+    bucket.take(9600);
+  }
+}
+
+// ==== session loss bursts ====
+
+constexpr std::uint64_t kEvery = 10'000;  // [us] from number to number; 10 ticks
+
+/// Numbers 1 to `count` but those that are lost.
+LossBursts with(std::uint64_t count, const std::set<std::uint64_t>& lost, std::uint64_t start = 0) {
+  LossBursts out;
+  for (std::uint64_t n = 1; n <= count; ++n)
+    if (!lost.contains(n)) out.heard(start + n, static_cast<std::int64_t>(10 * n), kEvery * n);
+  return out;
+}
+
+TEST(LossBursts, ABurstIsAsLongAsFromTheStateBeforeToTheStateAfter) {
+  EXPECT_EQ(with(100, {40, 41, 42}).bridge(150, 100 * kEvery), 40);
+  EXPECT_EQ(with(100, {40, 41, 42, 43, 44}).bridge(150, 100 * kEvery), 60);
+  EXPECT_EQ(with(100, {40, 41, 42}, 10'000).bridge(150, 100 * kEvery), 40) << "what came before the first is not lost";
+}
+
+TEST(LossBursts, SingleLossesAreNone) {
+  EXPECT_EQ(with(100, {}).bridge(150, 100 * kEvery), 0);
+  EXPECT_EQ(with(100, {10, 11, 20, 30, 31}).bridge(150, 100 * kEvery), 0);
+  EXPECT_EQ(with(100, {10, 11, 20, 40, 41, 42}).bridge(150, 100 * kEvery), 0) << "half are not most";
+  EXPECT_EQ(with(100, {10, 11, 40, 41, 42}).bridge(150, 100 * kEvery), 40);
+}
+
+TEST(LossBursts, TwoThirdsOfThemAreBridged) {
+  std::set<std::uint64_t> lost;
+  for (std::uint64_t burst = 0; burst < 10; ++burst)
+    for (std::uint64_t n = 0; n < 3 + burst; ++n) lost.insert(20 * burst + 10 + n);
+  EXPECT_EQ(with(300, lost).bridge(1000, 300 * kEvery), 100);
+}
+
+TEST(LossBursts, OutagesAreNotBridged) {
+  std::set<std::uint64_t> lost{10, 11, 12, 13};
+  for (std::uint64_t n = 50; n < 70; ++n) lost.insert({n, n + 30});
+  EXPECT_EQ(with(200, lost).bridge(150, 200 * kEvery), 50);
+  EXPECT_EQ(with(200, lost).bridge(210, 200 * kEvery), 210);
+  EXPECT_EQ(with(200, lost).bridge(40, 200 * kEvery), 0);
+}
+
+TEST(LossBursts, WhatIsOnlyLateIsNotLost) {
+  LossBursts bursts = with(20, {17, 18, 19});
+  EXPECT_EQ(bursts.bridge(150, 20 * kEvery + 99'999), 0);
+  LossBursts same = bursts;
+  EXPECT_EQ(bursts.bridge(150, 20 * kEvery + 100'000), 40);
+  for (std::uint64_t n = 17; n < 20; ++n) same.heard(n, static_cast<std::int64_t>(10 * n), 20 * kEvery + 50'000);
+  EXPECT_EQ(same.bridge(150, 20 * kEvery + 100'000), 0);
+}
+
+TEST(LossBursts, DatagramsWithoutPacketsAreNoStates) {
+  LossBursts bursts;
+  for (std::uint64_t n = 1; n <= 100; ++n) {
+    const bool has_packets = n < 38 || n > 45;
+    if (n < 40 || n > 42) bursts.heard(n, has_packets ? std::optional<std::int64_t>(10 * n) : std::nullopt, kEvery * n);
+  }
+  EXPECT_EQ(bursts.bridge(150, 100 * kEvery), 90);
+}
+
+TEST(LossBursts, OnlyTheNewestThousandNumbersCount) {
+  EXPECT_EQ(with(1100, {40, 41, 42}).bridge(150, 1100 * kEvery), 0);
+  EXPECT_EQ(with(1060, {40, 41, 42}).bridge(150, 1060 * kEvery), 40);
+  LossBursts bursts = with(1100, {});
+  bursts.heard(76, 5, 1100 * kEvery);  // too old: another stands in its place
+  EXPECT_EQ(bursts.bridge(150, 1100 * kEvery), 0);
+}
+
+TEST(LossBursts, WhateverComesItIsWithinItsLimit) {
+  std::mt19937_64 random(3);
+  LossBursts bursts;
+  std::uint64_t now = 0, number = 10;
+  int bridged = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    now += random() % 50'000;
+    const auto tick = static_cast<std::int64_t>(random() >> (1 + random() % 63));
+    number += random() % 8 == 0 ? random() % 40 : 1;
+    bursts.heard(number - random() % 3, random() % 4 ? std::optional(tick % (i + 200)) : std::nullopt, now);
+    if (i % 100 > 0) continue;
+    const std::int64_t bridge = bursts.bridge(150, now);
+    EXPECT_GE(bridge, 0);
+    EXPECT_LE(bridge, 150);
+    bridged += bridge > 0 ? 1 : 0;
+  }
+  EXPECT_GT(bridged, 20);
+}
+
+// ==== session resends ====
+
+constexpr std::uint64_t kMillisecond = 1000, kWay = 20'000;  // [us]
+
+struct Sent {
+  explicit Sent(std::size_t size = 40) : bytes(size, 7) {}
+  Packet packet(std::uint64_t number) const {
+    return {.bytes = bytes, .substream = 2, .sequence = static_cast<std::uint16_t>(number), .number = number};
+  }
+  void keep(Resends& in, std::uint64_t datagram, std::uint64_t number, std::uint64_t now) const {
+    in.keep(datagram, packet(number), {.bytes = bytes}, now);
+  }
+  std::vector<std::uint8_t> bytes;
+};
+
+TEST(Resends, WhatIsLostGoesAgainOnce) {
+  Resends resends(0);
+  const Sent sent;
+  for (std::uint64_t n = 1; n <= 5; ++n) sent.keep(resends, n + 100, n, n * kMillisecond);
+  EXPECT_EQ(resends.next(10 * kMillisecond, kWay), nullptr);
+  EXPECT_FALSE(resends.due());
+  resends.lost(103, 50 * kMillisecond, 1);
+  resends.lost(999, 50 * kMillisecond, 1);
+  EXPECT_EQ(resends.due(), 50 * kMillisecond);
+  const auto* copy = resends.next(50 * kMillisecond, kWay);
+  ASSERT_NE(copy, nullptr);
+  EXPECT_EQ(copy->number, 3u);
+  EXPECT_EQ(copy->substream, 2u);
+  EXPECT_EQ(copy->sequence, 3u);
+  EXPECT_EQ(copy->bytes, sent.bytes);
+  resends.sent(*copy, 50 * kMillisecond);
+  EXPECT_EQ(resends.next(51 * kMillisecond, kWay), nullptr);
+  EXPECT_FALSE(resends.due());
+}
+
+TEST(Resends, TheSecondCopyGoesTenMillisecondsLater) {
+  Resends resends(0);
+  const Sent sent;
+  sent.keep(resends, 1, 1, 0);
+  resends.lost(1, 50 * kMillisecond, 2);
+  resends.sent(*resends.next(52 * kMillisecond, kWay), 52 * kMillisecond);
+  EXPECT_EQ(resends.next(62 * kMillisecond - 1, kWay), nullptr);
+  EXPECT_EQ(resends.due(), 62 * kMillisecond);
+  resends.sent(*resends.next(62 * kMillisecond, kWay), 62 * kMillisecond);
+  EXPECT_EQ(resends.next(90 * kMillisecond, kWay), nullptr);
+}
+
+TEST(Resends, OldPacketsDoNotGo) {
+  Resends resends(0);
+  const Sent sent;
+  sent.keep(resends, 1, 1, 0);
+  resends.lost(1, 50 * kMillisecond, 2);
+  Resends late = resends;
+  EXPECT_NE(resends.next(100 * kMillisecond, kWay), nullptr) << "it arrives 120 ms after the first";
+  EXPECT_EQ(late.next(100 * kMillisecond + 1, kWay), nullptr);
+  EXPECT_FALSE(late.due());
+}
+
+TEST(Resends, AllPacketsOfADatagramGoTheOldestFirst) {
+  Resends resends(0);
+  const Sent sent;
+  sent.keep(resends, 9, 12, 0);
+  sent.keep(resends, 9, 11, 0);
+  sent.keep(resends, 8, 10, 0);
+  resends.lost(9, kMillisecond, 1);
+  for (const std::uint64_t number : {11u, 12u}) {
+    const auto* copy = resends.next(kMillisecond, kWay);
+    ASSERT_NE(copy, nullptr);
+    EXPECT_EQ(copy->number, number);
+    resends.sent(*copy, kMillisecond);
+  }
+  EXPECT_EQ(resends.next(kMillisecond, kWay), nullptr);
+}
+
+TEST(Resends, FragmentsGoByThemselves) {
+  Resends resends(5 * 1150);
+  const Sent sent(2 * 1150 + 7);
+  for (std::size_t i = 0; i < 3; ++i)
+    resends.keep(20 + i, sent.packet(4), {i, 3, std::span(sent.bytes).subspan(i * 1150, i < 2 ? 1150 : 7)}, 0);
+  resends.lost(22, kMillisecond, 1);
+  const auto* copy = resends.next(kMillisecond, kWay);
+  ASSERT_NE(copy, nullptr);
+  EXPECT_EQ(copy->number, 4u);
+  EXPECT_EQ(copy->index, 2u);
+  EXPECT_EQ(copy->count, 3u);
+  EXPECT_EQ(copy->bytes, std::vector<std::uint8_t>(7, 7));
+  resends.sent(*copy, kMillisecond);
+  EXPECT_EQ(resends.next(kMillisecond, kWay), nullptr);
+  const Sent small;
+  for (std::uint64_t n = 0; n < 64; ++n) small.keep(resends, 100 + n, 50 + n, kMillisecond);
+  resends.lost(22, 2 * kMillisecond, 1);
+  EXPECT_NE(resends.next(2 * kMillisecond, kWay), nullptr) << "a packet in fragments costs the others no place";
+}
+
+/// Against a list of what should go; nothing is allocated.
+TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
+  Resends resends(0);
+  std::mt19937_64 random(1);
+  const Sent large(1150);
+  const std::uint64_t before = testing::allocated_bytes();
+  std::uint64_t number = 0, now = 0, copies = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    now += random() % 5'000;
+    ++number;
+    large.keep(resends, number, number, now);
+    if (random() % 2) resends.lost(number - std::min<std::uint64_t>(number - 1, random() % 100), now, 1 + random() % 2);
+    while (const auto* copy = random() % 4 ? resends.next(now, kWay) : nullptr) {
+      ASSERT_GT(copy->number + 64, number);
+      ASSERT_LE(now + kWay, copy->time + 120'000);
+      resends.sent(*copy, now);
+      ++copies;
+    }
+  }
+  EXPECT_GT(copies, 1'000u);
+  EXPECT_EQ(testing::allocated_bytes(), before);
+  now += 1'000'000;
+  EXPECT_EQ(resends.next(now, kWay), nullptr);
+  EXPECT_FALSE(resends.due()) << "the count of those that wait is right";
 }
 
 }  // namespace

@@ -53,6 +53,28 @@ TEST(ArrayTrace, MissingSamplesAndTimesAreLeftOutAndCounted) {
   EXPECT_EQ(notes.all()[2].where, "hand.force");
 }
 
+/// 10 Hz of ticks and a gap of 0.25 s: a force is held for as long, a place for ever.
+TEST(ArrayTrace, AForceIsHeldForAsLongAsTheGap) {
+  std::vector<std::int64_t> time;
+  std::vector<double> device, force;
+  for (int i = 0; i < 12; ++i) {
+    time.push_back(100'000'000 * i);
+    const bool is_lost = i >= 3 && i < 9;
+    device.insert(device.end(), {is_lost ? kNan : 0.1 * i, 0, 0});
+    force.insert(force.end(), {is_lost || i == 11 ? kNan : 5.0, 0, 0});
+  }
+  const TempFile file;
+  ReadNotes notes;
+  const SampledArrays arrays{.time = time, .users = {{.name = "hand", .device = device, .force = force}}, .gap = 0.25};
+  ASSERT_TRUE(write_arrays(arrays, file.path(), notes));
+  const auto frames = frames_of(file.path());
+  ASSERT_EQ(frames.size(), 12u);
+  for (std::size_t i = 0; i < 12; ++i) {
+    EXPECT_EQ(frames[i].users[0].force.x, i >= 5 && i < 9 ? 0 : 5) << i;
+    EXPECT_EQ(frames[i].users[0].device.position.x, i >= 3 && i < 9 ? 0.2 : 0.1 * static_cast<double>(i)) << i;
+  }
+}
+
 /// The rule of tables and ROS 2 recordings (missing.h).
 TEST(ArrayTrace, ARotationIsOfUnitLengthOrMissing) {
   const std::vector<std::int64_t> time{0, 10'000'000, 20'000'000, 30'000'000};

@@ -1,144 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Recordings of other programs: odometry, frames that hang on each other, forces.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <numbers>
 
-#include <tactus/trace/mcap_writer.h>
-#include <tactus/trace/messages.h>
-#include <tactus/trace/ros_messages.h>
-#include "tests/unit/trace_fixture.h"
+#include "tests/unit/ros_bag.h"
 
-namespace tactus {
+namespace tactus::ros_bag {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-Quat about_z(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
-
-void header(CdrWriter& out, std::string_view frame) {
-  out.u32(1'700'000'000);  // not used
-  out.u32(0);
-  out.text(frame);
-}
-
-struct Hung {
-  std::string_view parent, child;
-  Pose pose;
-};
-
-Bytes transforms(const std::vector<Hung>& all) {
-  Bytes message;
-  CdrWriter out(message);
-  out.u32(static_cast<std::uint32_t>(all.size()));
-  for (const Hung& one : all) {
-    header(out, one.parent);
-    out.text(one.child);
-    out.vec3(one.pose.position);
-    out.quat(one.pose.rotation);
-  }
-  return message;
-}
-
-Bytes transform(const Hung& one) {
-  Bytes message;
-  CdrWriter out(message);
-  header(out, one.parent);
-  out.text(one.child);
-  out.vec3(one.pose.position);
-  out.quat(one.pose.rotation);
-  return message;
-}
-
-Bytes odometry(const Pose& pose, const Twist& twist) {
-  Bytes message;
-  CdrWriter out(message);
-  header(out, "odom");
-  out.text("base");
-  out.vec3(pose.position);
-  out.quat(pose.rotation);
-  for (int i = 0; i < 36; ++i) out.f64(i);
-  out.vec3(twist.linear);
-  out.vec3(twist.angular);
-  for (int i = 0; i < 36; ++i) out.f64(-i);
-  return message;
-}
-
-Bytes wrench(std::string_view frame, const Vec3& force) {
-  Bytes message;
-  CdrWriter out(message);
-  header(out, frame);
-  out.vec3(force);
-  out.vec3({9, 9, 9});
-  return message;
-}
-
-Bytes pose(const Pose& value) {
-  Bytes message;
-  encode_pose(message, 0, value);
-  return message;
-}
-
-using Notes = std::vector<std::pair<std::string, std::string>>;
-
-/// A recording that begins on an ordinary day.
-class RosBag {
- public:
-  RosBag& add(double ms, const std::string& topic, std::string_view schema, const Bytes& message) {
-    if (!channels_.contains(topic)) {
-      const auto id = static_cast<std::uint16_t>(channels_.size() + 1);
-      channels_[topic] = id;
-      EXPECT_TRUE(out_.add(mcap::Schema{id, std::string(schema), "ros2msg", ""}));
-      EXPECT_TRUE(out_.add(mcap::Channel{id, id, topic, "cdr", {}}));
-    }
-    const auto time = std::uint64_t{1'700'000'000'000'000'000} + static_cast<std::uint64_t>(1e6 * ms);
-    out_.add(mcap::Message{channels_[topic], 0, time, time, message});
-    return *this;
-  }
-  RosBag& tf(double ms, const std::vector<Hung>& all) { return add(ms, "/tf", kTransformsSchema, transforms(all)); }
-  RosBag& force(double ms, std::string_view frame, const Vec3& force) {
-    return add(ms, "/arm/wrench", kWrenchSchema, wrench(frame, force));
-  }
-
-  Result<TraceReader> open() {
-    EXPECT_TRUE(out_.finish());
-    return TraceReader::open(file_.path());
-  }
-  /// All but that of the clock, once everything was read.
-  Notes notes() {
-    auto reader = open();
-    EXPECT_TRUE(reader);
-    for (TraceFrame frame; reader && reader->next(frame).value_or(false);) {
-    }
-    Notes notes;
-    for (const ReadNote& note : reader->notes())
-      if (!note.what.starts_with("log times are the clock")) notes.emplace_back(note.where, note.what);
-    return notes;
-  }
-  std::string rule() {
-    const Reading reading = read_all(open());
-    return reading.error ? reading.error->rule : "";
-  }
-
- private:
-  TempFile file_;
-  mcap::Writer out_ = mcap::Writer::create(file_.path(), "ros2").value();
-  std::map<std::string, std::uint16_t> channels_;
-};
-
-bool has(const std::vector<ReadNote>& notes, std::string_view where, std::string_view what) {
-  return std::ranges::any_of(notes, [&](const ReadNote& note) { return note.where == where && note.what == what; });
-}
-bool has(const Notes& notes, std::string_view where, std::string_view what) {
-  return std::ranges::find(notes, std::pair(std::string(where), std::string(what))) != notes.end();
-}
-
-void expect_near(const Vec3& a, const Vec3& b, double off = 1e-9) {
-  EXPECT_LT(norm(a - b), off) << a.x << ' ' << a.y << ' ' << a.z;
-}
 
 TEST(TraceRos, OdometryMovesAnObjectByItsOwnVelocity) {
   RosBag bag;
@@ -192,7 +61,7 @@ TEST(TraceRos, AForceActsWhereItsFrameIs) {
   EXPECT_EQ(reader->info().users[0].name, "arm");
   const Reading reading = read_all(std::move(reader));
   ASSERT_EQ(reading.frames.size(), 4u);
-  expect_near(reading.frames[0].users[0].force, {});  // before the first
+  expect_near(reading.frames[0].users[0].force, {0, 1, 0});  // the first, 0.1 ms later
   for (int i = 1; i < 4; ++i) {
     const UserSample& user = reading.frames[static_cast<std::size_t>(i)].users[0];
     expect_near(user.device.position, {0.1 * i, 0, 0});
@@ -317,15 +186,6 @@ TEST(TraceRos, AForceBesideSeveralTopicsActsAtNoneOfThem) {
   expect_near(reading.frames.back().users[0].device.position, {0, 0, 0});
 }
 
-Bytes pose_in(std::string_view frame, const Pose& value) {
-  Bytes message;
-  CdrWriter out(message);
-  header(out, frame);
-  out.vec3(value.position);
-  out.quat(value.rotation);
-  return message;
-}
-
 TEST(TraceRos, APoseIsInItsFrame) {
   RosBag bag;
   bag.add(0, "/tf_static", kTransformsSchema,
@@ -373,6 +233,31 @@ TEST(TraceRos, StampsAreTheClockWhereLogTimesComeInBursts) {
   const Reading reading = read_all(std::move(reader));
   ASSERT_EQ(reading.frames.size(), 200u);
   for (const TraceFrame& frame : reading.frames) expect_near(frame.objects[0].velocity, {1, 0, 0}, 1e-6);
+}
+
+/// A frame of 25 Hz that turns and carries a hand, beside forces of 1 kHz: at each tick all move as they are told between samples.
+TEST(TraceRos, WhatComesSeldomMovesSmoothly) {
+  RosBag bag;
+  const auto angle = [](double t) { return 0.5 * std::sin(2 * t); };
+  for (int i = 0; i <= 1000; ++i) {
+    bag.force(i, "sensor", {0, 0, 1});
+    if (i % 40 != 0) continue;
+    const double t = 0.001 * i;
+    bag.tf(i, {{"map", "arm", {{0.3 * std::sin(3 * t), 0, 0}, about_z(angle(t))}}});
+    bag.add(i, "/tool/pose", schema_name(MessageType::pose), pose_in("arm", {{0.4, 0, 0}, {}}));
+  }
+  auto reader = bag.open();
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->info().tick_rate, 1000u);
+  const Reading reading = read_all(std::move(reader));
+  ASSERT_EQ(reading.frames.size(), 1001u);
+  for (std::size_t i = 40; i <= 960; ++i) {
+    const double t = 0.001 * static_cast<double>(i), a = angle(t), w = std::cos(2 * t);
+    const auto& objects = reading.frames[i].objects;  // the tool, the arm
+    expect_near(objects[1].angular_velocity, {0, 0, w}, 2e-3);
+    expect_near(objects[1].velocity, {0.9 * std::cos(3 * t), 0, 0}, 5e-3);
+    expect_near(objects[0].velocity, {0.9 * std::cos(3 * t) - 0.4 * w * std::sin(a), 0.4 * w * std::cos(a), 0}, 6e-3);
+  }
 }
 
 TEST(TraceRos, ABadSampleIsMissing) {
@@ -427,4 +312,4 @@ TEST(TraceRos, MessagesAreDistrusted) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::ros_bag

@@ -22,9 +22,15 @@ _ROTATION = (("qw", "qx", "qy", "qz"), ("rotation_w", "rotation_x", "rotation_y"
 _FORCE = (("fx", "fy", "fz"), ("force_x", "force_y", "force_z"))
 
 
+def _without_zone(time: Any) -> Any:
+    """Times of pandas that have a zone, in UTC; others as they are."""
+    of = getattr(time, "dt", time)  # of a column; an index has none
+    return of.tz_convert(None) if getattr(of, "tz", None) is not None else time
+
+
 def nanoseconds(time: Any, unit: str | None) -> npt.NDArray[np.int64]:
     """Seconds (floats), datetime64, timedelta64, or whole numbers of nanoseconds, unless a unit is given.   raises  Error"""
-    values = np.asarray(time)
+    values = np.asarray(_without_zone(time))
     if values.ndim != 1 or values.dtype.kind not in "fiuMm":
         raise refusal("R-CSV-8", f"time has shape {values.shape} and type {values.dtype}: a row of seconds, nanoseconds or datetime64 is wanted")
     if unit is not None and unit not in _UNITS:
@@ -125,7 +131,18 @@ class _Arrays(Handle):
         return self.notes
 
 
-def write_arrays(time: Any, poses: Any, wrenches: Any, devices: Any, order: str, time_unit: str | None, tick_rate: int | None,
+def _touched(contact: Any, where: str) -> tuple[str, float, int]:
+    """Object, stiffness and kind."""
+    kinds = {"plane": _abi.TACTUS_CONTACT_SURFACE, "spring": _abi.TACTUS_CONTACT_SPRING}
+    if not isinstance(contact, (tuple, list)) or len(contact) not in (2, 3) or not isinstance(contact[0], str):
+        raise refusal("R-CSV-8", f"{where} is {contact!r}, not (object, stiffness) or (object, stiffness, 'spring')")
+    kind = contact[2] if len(contact) == 3 else "plane"
+    if kind not in kinds:
+        raise refusal("R-CSV-8", f"{where}: {kind!r} is neither 'plane' nor 'spring'")
+    return contact[0], float(contact[1]), kinds[kind]
+
+
+def write_arrays(time: Any, poses: Any, wrenches: Any, devices: Any, contacts: Any, order: str, time_unit: str | None, tick_rate: int | None,
                  gap: float, source: str) -> tuple[bytes, list[str]]:
     """The bytes of a trace, and notes; arguments as Trace.from_arrays."""
     objects, forces, hands = _by_name(poses, "object"), _by_name(wrenches, "user"), _by_name(devices, "user")
@@ -152,6 +169,10 @@ def write_arrays(time: Any, poses: Any, wrenches: Any, devices: Any, order: str,
             if name in forces and not _is_frame(forces[name]) and np.shape(forces[name])[1] == 6:
                 told.append(f"{name}: torques are left out")
             arrays.add(traces().tactus_arrays_user, name, device, force)
+        for name, contact in _by_name(contacts, "user").items():
+            touched, stiffness, kind = _touched(contact, f"contacts[{name!r}]")
+            call(traces().tactus_arrays_contact, arrays.handle, text_of(name.encode()), text_of(touched.encode()), stiffness, kind,
+                 int(name not in hands), subject=name)
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "trace.mcap")
             told += arrays.write(path)

@@ -164,22 +164,26 @@ class Trace:
     senses: list[int] | None = None
 
     @classmethod
-    def from_arrays(cls, time: Any = None, poses: Any = None, wrenches: Any = None, devices: Any = None, *, order: str = "wxyz",
-                    time_unit: str | None = None, tick_rate: int | None = None, gap: float = 0.1, source: str = "arrays") -> Trace:
+    def from_arrays(cls, time: Any = None, poses: Any = None, wrenches: Any = None, devices: Any = None, *, contacts: Any = None,
+                    order: str = "wxyz", time_unit: str | None = None, tick_rate: int | None = None, gap: float = 0.1,
+                    source: str = "arrays") -> Trace:
         """A trace of samples that are in memory.
 
-        time       (T,) seconds (floats), datetime64, or whole nanoseconds; time_unit "s", "ms", "us" or "ns" says otherwise. None: evenly
+        time       (T,) seconds (floats), datetime64 (or a column or index of times of pandas), or whole nanoseconds; time_unit "s", "ms", "us" or "ns" says otherwise. None: evenly
                    spaced at tick_rate
         poses      name -> (T, 3) positions [m], (T, 7) positions and quaternions, a tuple of (T, 3) and (T, 4), or a data frame with columns
                    x, y, z and qw, qx, qy, qz; without a name "object". World frame, right-handed
         wrenches   name -> (T, 3) force on the user [N], (T, 6) with the torque, which is left out, or columns fx, fy, fz; else "user"
         devices    name -> (T, 3) places of the devices [m], or columns x, y, z
+        contacts   user -> (object, stiffness [N/m]) or (object, stiffness, "plane" or "spring"): what the user touched. It gives the
+                   recorded forces a bound: each stretches a spring between the device, or the object's origin if the user has none, and the
+                   object; what lies along the force counts, or ("spring", as of a grip) the whole vector
         order      of quaternions in arrays: "wxyz" or "xyzw"
         tick_rate  [1/s]; None: found from the times
         gap        [s] missing samples (NaN, a rotation of length 0) are interpolated over so much; else the last one is held
         raises     Error, with the array and the row
         """
-        data, notes = write_arrays(time, poses, wrenches, devices, order, time_unit, tick_rate, gap, source)
+        data, notes = write_arrays(time, poses, wrenches, devices, contacts, order, time_unit, tick_rate, gap, source)
         return dataclasses.replace(read_trace(data), notes=notes)
 
     def save(self, path: str | os.PathLike[str]) -> None:

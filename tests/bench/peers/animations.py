@@ -3,11 +3,12 @@
 """Rate against error of meshes that move freely, with and without clusters, beside MPEG-4 FAMC.
 
     tests/bench/peers/animations.py TACTUS FOLDER... [-o OUT]
+    tests/bench/peers/animations.py --points OUT/points.csv [-o OUT]    # figures and shares of what was measured before
 
 A FOLDER holds one OBJ file per frame and is named after its clip. It is read by `tactus import mesh` so that the diagonal of the box
-of all frames is 1024 mm: a unit, its 1024th part, is 1 mm. Writes points.csv and a figure for each clip to OUT, for which it
-needs matplotlib.
-Prints at which share of FAMC's bits ours has the same KG error. famc.csv holds what FAMC's reference software made of four clips.
+of all frames is 1024 mm: a unit, its 1024th part, is 1 mm. Writes points.csv, beside-famc.csv and a figure for each clip to OUT, for
+which it needs matplotlib.
+beside-famc.csv: the shares of FAMC's bits at which ours has the same KG error. famc.csv holds what FAMC's reference software made of four clips.
 """
 import argparse
 import csv
@@ -100,33 +101,59 @@ def draw(clip, points, famc, out):
     figure.save(fig, out / f"{clip}.svg")
 
 
+def beside(points, famc, least=0.4, largest=1.1):
+    """Rows of beside-famc.csv: least and largest share of FAMC's bits at the same KG error, of its points from 0.4 to 1.1 %."""
+    rows = []
+    for clip in dict.fromkeys(p["clip"] for p in famc):
+        for is_whole in (True, False):
+            others = [p for p in famc if p["clip"] == clip and (p["segment"] == "whole") == is_whole]
+            others = [p for p in others if least <= float(p["kg_percent"]) <= largest]
+            for setting in ("no basis", "40 clusters"):
+                ours = [p for p in points if p["clip"] == clip and p["setting"] == setting]
+                shares = [rate / float(p["bits_per_vertex"]) for p in others if (rate := rate_at(ours, float(p["kg_percent"])))]
+                if shares:
+                    rows.append([clip, "whole clip" if is_whole else "8 to 57 frames", setting.replace("no basis", "none"),
+                                 f"{min(shares):.2f}", f"{max(shares):.2f}"])
+    return rows
+
+
+def draw_all(points, out):
+    with FAMC.open() as file:
+        famc = list(csv.DictReader(file))
+    for clip in dict.fromkeys(p["clip"] for p in points):
+        draw(clip, [p for p in points if p["clip"] == clip], [p for p in famc if p["clip"] == clip], out)
+    with (out / "beside-famc.csv").open("w", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["clip", "famc_knows", "basis", "least_ratio_of_bits", "largest_ratio_of_bits"])
+        table.writerows(beside(points, famc))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tactus", type=pathlib.Path, metavar="TACTUS", help="the program")
-    parser.add_argument("folders", type=pathlib.Path, nargs="+", metavar="FOLDER")
+    parser.add_argument("tactus", nargs="?", type=pathlib.Path, metavar="TACTUS", help="the program")
+    parser.add_argument("folders", type=pathlib.Path, nargs="*", metavar="FOLDER")
+    parser.add_argument("--points", type=pathlib.Path, metavar="CSV", help="of an earlier run: nothing is measured")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("out/animation"), metavar="OUT", help="[out/animation]")
     args = parser.parse_args()
+    if bool(args.folders) == bool(args.points):
+        parser.error("give the program and folders, or --points")
     for folder in args.folders:
         if not re.fullmatch(r"[A-Za-z0-9_-]+", folder.name) or not any(folder.glob("*.obj")):
             parser.error(f"{folder}: must be a folder of OBJ files with a name of letters, digits, _ and -")
     args.output.mkdir(parents=True, exist_ok=True)
-    with FAMC.open() as file:
-        famc = list(csv.DictReader(file))
-    all_points = []
+    if args.points:
+        with args.points.open() as file:
+            draw_all(list(csv.DictReader(file)), args.output)
+        return 0
+    points = []
     for folder in args.folders:
         with tempfile.TemporaryDirectory() as scratch:
-            points = list(points_of(args.tactus, folder, pathlib.Path(scratch)))
-        all_points += points
-        others = [p for p in famc if p["clip"] == folder.name]
-        draw(folder.name, points, others, args.output)
-        for p in others:
-            shares = [(s, rate_at([q for q in points if q["setting"] == s], float(p["kg_percent"]))) for s in SETTINGS]
-            text = ", ".join(f"{s} {rate / float(p['bits_per_vertex']):.2f}" for s, rate in shares if rate)
-            print(f"{folder.name:8} FAMC {p['segment']:5} {p['mode']:8} KG {p['kg_percent']:>6} %  {p['bits_per_vertex']:>6} bits   ours: {text or '-'}")
+            points += points_of(args.tactus, folder, pathlib.Path(scratch))
     with (args.output / "points.csv").open("w", newline="") as file:
         table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         table.writeheader()
-        table.writerows(all_points)
+        table.writerows(points)
+    draw_all(points, args.output)
     return 0
 
 

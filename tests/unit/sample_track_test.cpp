@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples around a time, and how fast they move: io/trace/sample_track.h.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include <tactus/trace/sample_track.h>
+
+namespace tactus {
+namespace {
+
+using Track = SampleTrack<std::int64_t>;
+using Place = Track::Place;
+
+constexpr std::int64_t kMs = 1'000'000;  // [ns]
+constexpr double kNanosecond = 1e-9;
+
+Pose along_x(double x) { return {{x, 0, 0}, {}}; }
+Pose about_z(double angle) { return {{}, {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}}; }
+
+/// Samples every `period`, looked at every millisecond.
+class Recorded {
+ public:
+  Recorded(const std::function<Pose(double)>& motion, const std::vector<std::int64_t>& times, double gap = 0.1e9) {
+    Track track({.gap = gap, .tick = kMs});
+    std::size_t next = 0;
+    for (std::int64_t time = 0; time <= times.back() + 20 * kMs; time += kMs) {
+      while (next < times.size() && !track.is_settled(time, next == 0 ? -1 : times[next - 1]))
+        track.add({times[next], {motion(1e-9 * static_cast<double>(times[next])), {}, {}}}), ++next;
+      track.move_to(time);
+      at_.push_back(track.place() == Place::nowhere ? RigidSample{} : track.moving(kNanosecond));
+      places_.push_back(track.place());
+    }
+  }
+  const RigidSample& at(int ms) const { return at_[static_cast<std::size_t>(ms)]; }
+  Place place(int ms) const { return places_[static_cast<std::size_t>(ms)]; }
+
+ private:
+  std::vector<RigidSample> at_;
+  std::vector<Place> places_;
+};
+
+std::vector<std::int64_t> every(double ms, int count) {
+  std::vector<std::int64_t> times;
+  for (int i = 0; i < count; ++i) times.push_back(std::llround(ms * i * kMs));
+  return times;
+}
+
+TEST(SampleTrack, AConstantVelocityIsItselfEverywhere) {
+  const auto motion = [](double t) { return Pose{{2 * t, 0, 0}, {std::cos(1.5 * t), std::sin(1.5 * t), 0, 0}}; };
+  for (const double period : {0.2, 1.0, 4.0, 33.0}) {
+    const Recorded all(motion, every(period, 40));
+    const int end = static_cast<int>(std::floor(39 * period));
+    for (int ms = 0; ms <= end; ++ms) {
+      EXPECT_NEAR(all.at(ms).pose.position.x, 0.002 * ms, 1e-12) << period << ' ' << ms;
+      EXPECT_NEAR(all.at(ms).velocity.x, 2, 1e-6) << period << ' ' << ms;
+      EXPECT_NEAR(all.at(ms).angular_velocity.x, 3, 1e-6) << period << ' ' << ms;
+    }
+    EXPECT_EQ(all.at(end + 2).velocity, Vec3());
+  }
+}
+
+/// The velocity is that of the motion within h^2/6 of its third derivative, h a sample period, and it has no steps.
+TEST(SampleTrack, ASineMovesSmoothlyBetweenSamplesThatAreFarApart) {
+  const auto motion = [](double t) { return Pose{{0.1 * std::sin(6 * t), 0, 0}, about_z(std::cos(6 * t)).rotation}; };
+  const Recorded all(motion, every(20, 60));
+  for (int ms = 20; ms <= 58 * 20; ++ms) {
+    const double t = 0.001 * ms, most = 0.4e-3 / 6 * 216;  // of a unit of amplitude; and what the line between two samples is off
+    EXPECT_NEAR(all.at(ms).velocity.x, 0.6 * std::cos(6 * t), 0.1 * 2 * most) << ms;
+    EXPECT_NEAR(all.at(ms).angular_velocity.z, -6 * std::sin(6 * t), 2 * most) << ms;
+    EXPECT_LT(std::abs(all.at(ms).velocity.x - all.at(ms - 1).velocity.x), 1.1 * 0.001 * 3.6) << ms;  // 3.6 m/s^2 at most
+  }
+}
+
+TEST(SampleTrack, AtTheEndsOfAStretchTheVelocityIsThatOfItsOneSide) {
+  std::vector<std::int64_t> times = every(10, 6);
+  for (const std::int64_t time : every(10, 6)) times.push_back(time + 1000 * kMs);
+  const auto motion = [](double t) { return along_x(t < 0.5 ? t * t : 5 - 3 * t); };  // there it jumps, too
+  const Recorded all(motion, times);
+  EXPECT_NEAR(all.at(0).velocity.x, 0.01, 1e-9);
+  EXPECT_NEAR(all.at(20).velocity.x, 0.04, 1e-9);
+  EXPECT_NEAR(all.at(25).velocity.x, 0.05, 1e-9);
+  EXPECT_NEAR(all.at(50).velocity.x, 0.09, 1e-9);
+  EXPECT_EQ(all.place(51), Place::after);
+  for (const int ms : {51, 500, 999}) {
+    EXPECT_NEAR(all.at(ms).pose.position.x, 0.0025, 1e-12);
+    EXPECT_EQ(all.at(ms).velocity, Vec3());
+  }
+  EXPECT_NEAR(all.at(1000).pose.position.x, 2, 1e-9);
+  for (int ms = 1000; ms <= 1050; ++ms) EXPECT_NEAR(all.at(ms).velocity.x, -3, 1e-6);
+  EXPECT_EQ(all.at(1051).velocity, Vec3());
+}
+
+TEST(SampleTrack, AJumpWithinTheGapMovesNothingButItsNeighbours) {
+  const Recorded all([](double t) { return along_x(t < 0.045 ? 0 : 1); }, every(10, 10));
+  for (int ms = 0; ms <= 90; ++ms) {
+    const double wanted = ms <= 30 || ms >= 60 ? 0 : ms <= 40 ? 5.0 * (ms - 30) : ms >= 50 ? 5.0 * (60 - ms) : 50;
+    EXPECT_NEAR(all.at(ms).velocity.x, wanted, 1e-9) << ms;
+  }
+}
+
+/// Samples that are closer than ticks: what is told at ticks follows from about a tick, not from the noise of two neighbours.
+TEST(SampleTrack, DenseSamplesMoveOverATick) {
+  const auto motion = [](double t) {
+    return along_x(t + (std::llround(t * 2e4) % 2 == 0 ? 1e-5 : 0));
+  };  // +-0.4 m/s from one to the next
+  const Recorded all(motion, every(0.05, 2000));
+  for (int ms = 1; ms < 99; ++ms) EXPECT_NEAR(all.at(ms).velocity.x, 1, 0.011) << ms;
+}
+
+TEST(SampleTrack, FramesAndEqualTimes) {
+  Track track({.gap = 1e9, .tick = kMs});
+  track.add({0, {along_x(0), {}, {}}, 1});
+  track.add({10 * kMs, {along_x(1), {}, {}}, 1});
+  track.add({10 * kMs, {along_x(2), {}, {}}, 1});
+  track.add({20 * kMs, {along_x(7), {}, {}}, 2});
+  track.move_to(5 * kMs);
+  EXPECT_NEAR(track.value().pose.position.x, 1, 1e-12);
+  EXPECT_NEAR(track.span(), 10 * kMs, 1e-3);
+  track.move_to(15 * kMs);  // in another frame from 20 ms on
+  EXPECT_EQ(track.place(), Place::after);
+  EXPECT_EQ(track.value().pose.position.x, 2);
+  EXPECT_TRUE(track.is_near(5 * kMs));
+  EXPECT_FALSE(track.is_near(4 * kMs));
+  track.move_to(30 * kMs);
+  EXPECT_EQ(track.frame(), 2u);
+}
+
+TEST(SampleTrack, TwoSamplesAreJoinedUpToTheGapAndNoFarther) {
+  for (const auto& [apart, is_joined] : {std::pair{100, true}, std::pair{101, false}}) {
+    Track track({.gap = 100.0 * kMs, .tick = kMs});
+    track.add({0, {along_x(0), {}, {}}});
+    track.add({apart * kMs, {along_x(apart), {}, {}}});
+    track.move_to(50 * kMs);
+    EXPECT_EQ(track.place(), is_joined ? Place::between : Place::after) << apart;
+    EXPECT_NEAR(track.moving(kNanosecond).pose.position.x, is_joined ? 50 : 0, 1e-9) << apart;
+    EXPECT_NEAR(track.moving(kNanosecond).velocity.x, is_joined ? 1000 : 0, 1e-6) << apart;
+  }
+}
+
+}  // namespace
+}  // namespace tactus
