@@ -48,26 +48,27 @@ std::uint64_t read_token(int handle) {
   return read.ec == std::errc() && read.ptr == text.data() + text.size() ? token : 0;
 }
 
+/// A file of this user's that no other program holds; below 0: there is none.
+int open_own(const std::string& path, int how) {
+  const int handle = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | how, S_IRUSR | S_IWUSR);
+  if (handle < 0) return handle;
+  struct stat found {};
+  const bool ours = ::fstat(handle, &found) == 0 && S_ISREG(found.st_mode) && found.st_uid == ::geteuid() &&
+                    (found.st_mode & (S_IRWXG | S_IRWXO)) == 0;
+  if (ours && ::flock(handle, LOCK_EX | LOCK_NB) == 0) return handle;
+  ::close(handle);
+  return -1;
+}
+
 }  // namespace
 
 TokenFile::TokenFile(const std::string& server, const std::string& user) {
   const fs::path in = folder();
   const std::string name = file_name(server, user);
-  std::error_code ignored;
   if (in.empty() || name.size() > 200) return;
-  fs::create_directories(in, ignored);
   path_ = (in / name).string();
-  const int handle = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, S_IRUSR | S_IWUSR);
-  if (handle < 0) return;
-  struct stat found {};
-  const bool ours = ::fstat(handle, &found) == 0 && S_ISREG(found.st_mode) && found.st_uid == ::geteuid() &&
-                    (found.st_mode & (S_IRWXG | S_IRWXO)) == 0;
-  if (!ours || ::flock(handle, LOCK_EX | LOCK_NB) != 0) {
-    ::close(handle);
-    return;
-  }
-  handle_ = handle;
-  token_ = read_token(handle_);
+  handle_ = open_own(path_, 0);
+  if (handle_ >= 0) token_ = read_token(handle_);
 }
 
 TokenFile::~TokenFile() {
@@ -75,10 +76,16 @@ TokenFile::~TokenFile() {
 }
 
 void TokenFile::keep(std::uint64_t token) {
-  if (handle_ < 0 || token == token_) return;
+  if (token == token_ || path_.empty()) return;
+  if (handle_ < 0) {
+    std::error_code ignored;
+    fs::create_directories(fs::path(path_).parent_path(), ignored);
+    handle_ = open_own(path_, O_CREAT);
+  }
+  if (handle_ < 0) return;
   token_ = token;
   const std::string text = token == 0 ? "" : fmt::format("{:016x}", token);
-  if (::ftruncate(handle_, 0) != 0 || (token != 0 && ::pwrite(handle_, text.data(), text.size(), 0) < 0)) token_ = 0;
+  if (::ftruncate(handle_, 0) != 0 || ::pwrite(handle_, text.data(), text.size(), 0) < 0) token_ = 0;
   if (token == 0) ::unlink(path_.c_str());
 }
 

@@ -117,7 +117,6 @@ ServerConnection* SessionServer::Impl::follow(std::uint64_t peer, std::uint64_t 
   if (known == connections.end() || known->get() == here) return here;
   if (here != nullptr) drop(*here, SessionEvent::left, LeaveReason::bye);
   (*known)->move(peer);
-  note({.kind = ServerEvent::Kind::moved, .client = (*known)->client()});
   return known->get();
 }
 
@@ -128,8 +127,10 @@ Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, co
     refuse(LeaveReason::version);
     return {};
   }
+  const bool is_here = find(peer) != nullptr;
   ServerConnection* place = follow(peer, said.token);
   if (place != nullptr && place->state() != SessionState::closed && place->nonce() == said.nonce) {
+    if (!is_here) note({.kind = ServerEvent::Kind::moved, .client = place->client()});
     reply.emplace(peer, place->welcome());
     return {};
   }
