@@ -24,7 +24,8 @@ struct ServedScene {
   std::uint64_t hash = 0;   ///< of the declaration
   std::uint64_t start = 0;  ///< [us] at tick 0
   std::uint64_t world = 0;
-  std::optional<std::int64_t> shift{};  ///< [us] the program's clock less the one that clients are told; none before the first tick
+  std::optional<std::int64_t>
+      shift{};  ///< [us] the program's clock less the one that clients are told; none before the first tick
   SenderOptions sender;
 
   /// Within the limits of a client.

@@ -191,6 +191,10 @@ void SessionServer::Impl::keep_time(std::uint64_t now, std::int64_t tick) noexce
     if (!connection->is_outdated()) connection->shift(shift);
 }
 
+std::uint64_t SessionServer::clock(std::uint64_t now) const noexcept {
+  return now - static_cast<std::uint64_t>(impl_->served.shift.value_or(0));
+}
+
 Result<void> SessionServer::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {
   impl_->keep_time(now, tick);
   Result<void> first;

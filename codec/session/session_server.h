@@ -70,6 +70,8 @@ class SessionServer {
   /// pauses for more than 100 ms may go on with the next number.   time that of Sender::encode for each client
   /// err  as Sender::encode, the first; all clients that can are served
   Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;
+  /// [us] The clock that clients are told: by it tick n is at create() or replace_scene() + n ticks. Before the first tick that of the program.
+  std::uint64_t clock(std::uint64_t now) const noexcept;
   /// Another scene: clients get a new epoch, and show the old one until they hold the new. Ticks begin anew.   err  as create()
   Result<void> replace_scene(SharedScene scene, std::uint64_t now);
   /// What a participant plays, from 1; 0: nothing. It is told. Who comes back with the token of its session has the seat that it had.
