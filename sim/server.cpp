@@ -12,7 +12,11 @@
 namespace tactus::sim {
 
 Server::Server(const Scene& scene, const ServerOptions& options)
-    : scene_(scene), noise_(~options.seed), noise_reach_(std::sqrt(3.0) * options.mesh_noise), shares_(scene.users.size(), 1) {
+    : scene_(scene),
+      noise_(~options.seed),
+      noise_reach_(std::sqrt(3.0) * options.mesh_noise),
+      held_(scene.users.size(), 1),
+      shares_(scene.users.size(), 1) {
   const std::size_t objects = scene.objects.size() + scene.msds.size();
   frame_.objects.resize(objects);
   frame_.changed.emplace().reserve(objects);
@@ -118,7 +122,7 @@ void Server::touch(std::span<const DeviceSample> devices) noexcept {
       if (touch.surface) user.surface_contact = touch.surface;
       user.server_force = user.server_force + touch.force;
     }
-    shares_[i] = share_rendered(user.server_force, scene_.users[i].device.max_force);
+    shares_[i] = held_[i] * share_rendered(user.server_force, scene_.users[i].device.max_force);
     user.force = user.server_force = shares_[i] * user.server_force;
     if (!user.surface_contact) continue;
     // A user who touches a sleeping object needs its shape at haptic, not visual, accuracy.

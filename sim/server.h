@@ -47,6 +47,8 @@ class Server {
   /// Move every user's probe; write contacts and forces to frame(). The force that a hand felt is the server's there, until whoever has
   /// clients that tell theirs writes it.   in  devices  one per user   no allocation
   void touch(std::span<const DeviceSample> devices) noexcept;
+  /// Of the force of this user's hand only a share acts from now on: 0 lifts it off, 1 sets it down.
+  void lift(std::size_t user, double share) noexcept { held_[user] = share; }
   /// Packets of this tick for the clients; valid until the next call.   err  errors of Sender::encode   no allocation
   Result<std::span<const Packet>> encode() noexcept;
   /// What they are made of, for the sessions.   pre  there is a codec
@@ -82,7 +84,8 @@ class Server {
   std::optional<Sender> sender_;
   std::optional<FrameTruth> truth_;
   TraceFrame frame_;
-  std::vector<double> shares_;  // of each user's force that the device renders
+  std::vector<double> held_;    // share of each user's force that acts
+  std::vector<double> shares_;  // of each user's force that the device renders, times that
 };
 
 }  // namespace tactus::sim

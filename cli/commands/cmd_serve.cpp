@@ -7,12 +7,16 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
+#include <tactus/device/real_time.h>
 #include <tactus/net/udp.h>
 #include <tactus/session/session_server.h>
 #include <tactus/sim/server.h>
 #include <tactus/trace/trace_file.h>
+#include "cli/live/event_log.h"
 #include "cli/live/live_report.h"
+#include "cli/live/service.h"
 #include "cli/live/ticker.h"
 #include "cli/live/wire.h"
 #include "cli/observe/observation.h"
@@ -36,114 +40,11 @@ struct ServeOptions {
   double duration = 0;                   // [s], 0: until interrupted
   double rate = 0;                       // [bit/s] to each client
   std::uint64_t seed = 1;
+  std::string log = "text";
   TriggerArguments triggers;
   MeshArguments meshes;
   CommonOptions common;
 };
-
-/// Serves a simulated world in real time.
-class Service {
- public:
-  /// in   observation  may be null: nobody observes
-  Service(sim::Server& world, SessionServer& sessions, ServerWire& wire, Observation* observation)
-      : world_(world), sessions_(sessions), wire_(wire), observation_(observation), players_(world.scene().users.size()) {
-    for (const sim::SceneUser& user : world.scene().users) devices_.push_back({.position = user.start});
-  }
-
-  /// Take what has come, and what time has brought.
-  void hear();
-  /// A tick of the world.
-  Outcome step(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output);
-  void say(std::uint64_t now);
-  /// Take leave of all.
-  void close(std::uint64_t now);
-  std::size_t live() const;
-  std::uint64_t refused() const { return refused_; }
-
- private:
-  void seat(const ServerEvent& event);
-  void end(std::uint64_t peer);
-  bool has_session(std::uint64_t peer) const { return sessions_.has_peer(peer); }
-
-  sim::Server& world_;
-  SessionServer& sessions_;
-  ServerWire& wire_;
-  Observation* observation_;
-  std::vector<std::optional<std::uint16_t>> players_;  // the client that plays each user of the scene
-  std::vector<DeviceSample> devices_;
-  std::uint64_t refused_ = 0;
-};
-
-/// Each datagram has the time at which it was taken: what came while another was handled did not come before it.
-void Service::hear() {
-  constexpr int kMost = 1000;  // at a time: a tick must not wait for a flood to end
-  for (int i = 0; i < kMost; ++i) {
-    const auto heard = wire_.receive(microseconds_now());
-    if (!heard) break;
-    const std::uint64_t now = microseconds_now();
-    if (!sessions_.handle_datagram(now, heard->peer, heard->bytes)) ++refused_;
-    wire_.settle([this](std::uint64_t peer) { return has_session(peer); });
-    say(now);
-  }
-  while (const auto peer = wire_.poll_closed()) end(*peer);
-  sessions_.handle_timeout(microseconds_now());
-}
-
-/// The peer is gone: its client has left, even if no leave was heard.
-void Service::end(std::uint64_t peer) {
-  for (std::uint16_t i = 0; i < sessions_.clients(); ++i)
-    if (sessions_.status(i).peer == peer) sessions_.close(i, LeaveReason::bye);
-}
-
-void Service::close(std::uint64_t now) {
-  sessions_.close();
-  say(now);
-  wire_.close();
-}
-
-/// A participant plays the first user of the scene whom nobody plays. The hand of one who left is where it was before anybody came.
-void Service::seat(const ServerEvent& event) {
-  if (event.kind == ServerEvent::Kind::left) {
-    for (std::size_t i = 0; i < players_.size(); ++i) {
-      if (players_[i] != event.client) continue;
-      players_[i].reset();
-      devices_[i] = {.position = world_.scene().users[i].start};
-    }
-    return;
-  }
-  if (event.kind != ServerEvent::Kind::live || sessions_.status(event.client).role != Role::participant) return;
-  const auto free = std::ranges::find_if(players_, [](const auto& player) { return !player; });
-  if (free != players_.end()) *free = event.client;
-}
-
-void Service::say(std::uint64_t now) {
-  while (const auto datagram = sessions_.poll_datagram(now)) wire_.send(datagram->peer, datagram->bytes);
-  while (const auto event = sessions_.poll_event()) seat(*event);
-}
-
-Outcome Service::step(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output) {
-  wire_.tick(now, [this](std::uint64_t peer) { return has_session(peer); });
-  for (std::size_t i = 0; i < players_.size(); ++i)
-    if (players_[i]) devices_[i] = sessions_.device(*players_[i], now).value_or(devices_[i]);
-  world_.observe();
-  world_.touch(devices_);
-  const TraceFrame& frame = world_.frame();
-  const Truth truth = world_.truth();
-  if (const auto sent = sessions_.submit(now, frame.tick, truth); !sent)
-    return refuse("session", place_of_tick(frame.tick), sent.error());
-  say(now);
-  if (observation_ != nullptr) observation_->offer(frame, truth.loads);
-  if (trace)
-    if (const auto written = trace->write(frame); !written) return refuse(output, place_of_tick(frame.tick), written.error());
-  if (auto stepped = world_.step(); !stepped) return refuse(stepped.error());
-  return {};
-}
-
-std::size_t Service::live() const {
-  std::size_t count = 0;
-  for (std::uint16_t i = 0; i < sessions_.clients(); ++i) count += sessions_.status(i).state == SessionState::live ? 1u : 0u;
-  return count;
-}
 
 std::string meter_text(const sim::Server& world, const SessionServer& sessions, const Service& service, const Ticker& ticker) {
   std::string text =
@@ -259,17 +160,47 @@ tl::expected<std::unique_ptr<ServerWire>, Failure> make_wire(const ServeOptions&
   return sealed_wire_of_server(socket, options.clients, options.key);
 }
 
+/// Tells of ticks that this machine did not make in time.
+class MissedTicks {
+ public:
+  explicit MissedTicks(const EventLog& log) : log_(log) {}
+  /// Every ten seconds in which more than one in a hundred were.
+  void look(std::uint64_t now, const Ticker& ticker) {
+    constexpr std::uint64_t kEvery = 10'000'000;
+    if (now < looked_at_ + kEvery) return;
+    const std::uint64_t ticks = ticker.ticks() + ticker.missed() - ticks_, missed = ticker.missed() - missed_;
+    if (looked_at_ > 0 && 100 * missed > ticks)
+      log_.tell(
+          now, "missed_ticks",
+          fmt::format("missed {} of {} ticks in {:.0f} s: this machine has no time for them. Serve fewer clients, or end other "
+                      "programs",
+                      missed, ticks, 1e-6 * static_cast<double>(now - looked_at_)),
+          {{"missed", missed}, {"of", ticks}});
+    looked_at_ = now;
+    ticks_ += ticks;
+    missed_ += missed;
+  }
+
+ private:
+  const EventLog& log_;
+  std::uint64_t looked_at_ = 0, ticks_ = 0, missed_ = 0;
+};
+
 /// Until it is to end.
-Outcome serve(const ServeOptions& options, const sim::Server& world, SessionServer& sessions, Service& service, Ticker& ticker,
-              const net::UdpSocket& socket, std::optional<TraceWriter>& trace) {
+Outcome serve(const ServeOptions& options, const sim::Server& world, SessionServer& sessions, Service& service,
+              const EventLog& log, Ticker& ticker, const net::UdpSocket& socket, std::optional<TraceWriter>& trace) {
   const StopOnSignal stop;
   Meter meter(options.common.progress());
+  MissedTicks missed(log);
   const auto ticks = options.duration > 0 ? std::llround(options.duration * sim::kTickRate) : INT64_MAX;
   while (StopOnSignal::caught() == 0 && world.frame().tick < ticks) {
     const auto woken = ticker.wait(socket.handle(), sessions.next_timeout().value_or(UINT64_MAX));
     service.hear();
     const std::uint64_t now = microseconds_now();
-    if (woken == Ticker::Woken::by_tick) TACTUS_CHECK(service.step(now, trace, options.output));
+    if (woken == Ticker::Woken::by_tick) {
+      TACTUS_CHECK(service.step(now, ticker.tick(), trace, options.output));
+      missed.look(now, ticker);
+    }
     service.say(now);
     if (meter.is_due(now)) meter.draw(now, meter_text(world, sessions, service, ticker));
   }
@@ -288,18 +219,25 @@ Outcome run(const ServeOptions& typed) {
   const SessionServerOptions settings{.sender = options.meshes.sender(options.triggers),
                                       .clients = static_cast<std::uint16_t>(options.clients),
                                       .rate = static_cast<std::uint64_t>(options.rate),
-                                      .headers = static_cast<std::uint32_t>(kUdpHeader + seal)};
-  auto sessions = SessionServer::create(world->stream_scene(), settings, system_entropy(), microseconds_now());
-  if (!sessions) return refuse(options.scene, sessions.error());
+                                      .headers = static_cast<std::uint32_t>(kUdpHeader + seal),
+                                      .world = sim::fingerprint(world->scene())};
   TACTUS_TRY(auto recording, make_recording(options, *world));
   TACTUS_TRY(const auto observation, make_observation(options, *world));
+  const device::RealTime real_time;
+  const std::uint64_t origin = microseconds_now();
+  auto sessions = SessionServer::create(world->stream_scene(), settings, system_entropy(), origin);
+  if (!sessions) return refuse(options.scene, sessions.error());
   if (!options.common.quiet) fmt::print(stderr, "serving {} at {}\n", options.scene, options.listen);
   if (!options.common.quiet && observation) fmt::print(stderr, "observe it at {}\n", observation->address());
 
-  Service service(*world, *sessions, *wire, observation.get());
-  Ticker ticker(1'000'000 / sim::kTickRate);
-  const Outcome worked = serve(options, *world, *sessions, service, ticker, *socket, recording.trace);
-  const double seconds = static_cast<double>(ticker.ticks()) / sim::kTickRate;
+  const auto form = options.log == "json"  ? EventLog::Form::json
+                    : options.common.quiet ? EventLog::Form::none
+                                           : EventLog::Form::text;
+  const EventLog log(form, origin);
+  Service service(*world, *sessions, *wire, observation.get(), log);
+  Ticker ticker(1'000'000 / sim::kTickRate, origin);
+  const Outcome worked = serve(options, *world, *sessions, service, log, ticker, *socket, recording.trace);
+  const double seconds = static_cast<double>(ticker.tick() + 1) / sim::kTickRate;
   Json report = to_json(options, *sessions, *world->stream_scene(), service, ticker, seconds, wire->seal());
   service.close(microseconds_now());
   if (observation) report["observers"] = observers_json(observation->finish());
@@ -336,10 +274,17 @@ void setup_serve(Command& app, Action& action) {
       ->type_name("PORT");
   add_bit_rate(command, "--rate", options->rate, "Most that each client is sent, headers included [no limit]");
   add_quantity(command, "--duration", options->duration, Dimension::time, "End after this long [until Ctrl-C]");
+  command
+      .add_option("--log", options->log,
+                  "Each event (who joins, plays what, is silent, is gone) as a line on standard error: text or json")
+      ->one_of({"text", "json"})
+      ->show_default()
+      ->type_name("FORM");
   add_encoder_options(command, options->triggers, options->meshes);
   add_output_options(command, options->common);
   command.footer(
-      "A participant plays the first user of the scene whom nobody plays; others and observers look on.\n\n"
+      "A participant plays the user of the scene that it asks for, unless another one does: then it looks on, as observers do.\n"
+      "The hand of a participant that is not heard lifts off within 1 s. Its seat is kept for 10 s, and for its token.\n\n"
       "A browser that observes sees a stream of its own under the same bounds, beside the truth, made by a thread of its own.\n"
       "From another machine: ssh -L 8080:127.0.0.1:8080 SERVER, then the same address.\n"
       "Example, in three terminals, and http://127.0.0.1:8080/ in a browser:\n"

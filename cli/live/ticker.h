@@ -55,7 +55,9 @@ std::uint64_t microseconds_now() noexcept;
 /// and the ticks after it keep their times.
 class Ticker {
  public:
-  explicit Ticker(std::uint64_t period) noexcept : period_(period), due_(microseconds_now()) {}
+  /// in   origin  [us] time of tick 0
+  explicit Ticker(std::uint64_t period, std::uint64_t origin = microseconds_now()) noexcept
+      : period_(period), due_(origin - period) {}
 
   enum class Woken { by_tick, by_socket };
   /// Until the next tick, a datagram at the socket, or at the latest until `timeout` [us].
@@ -63,7 +65,9 @@ class Ticker {
   /// The time that the tick just begun was due [us]: even, unlike the time at which it began.
   std::uint64_t due() const noexcept { return due_; }
 
-  std::uint64_t ticks() const noexcept { return ticks_; }
+  /// The tick just begun, by its time.   pre  there was one
+  std::int64_t tick() const noexcept { return static_cast<std::int64_t>(ticks_ + missed_) - 1; }
+  std::uint64_t ticks() const noexcept { return ticks_; }  ///< that began
   std::uint64_t missed() const noexcept { return missed_; }
   /// [us] Lateness below which this share of the ticks began; of those that were late by more than 10 ms it is 10 ms.
   double lateness(double share) const noexcept;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <tactus/base/rule.h>
@@ -22,6 +23,8 @@ constexpr std::uint64_t kSeldom = 2;  // times these, of a client that works out
 constexpr std::uint32_t kSomeLoss = 65536 / 50;
 constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
 constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
+constexpr std::uint64_t kUnanswered = 400'000;   // [us] at least, until a client joins again
+constexpr std::uint64_t kAsleep = 100'000;       // [us] without a call: the program, or its machine, stood still
 constexpr unsigned kLeaves = 3;                  // one of them should arrive
 
 /// An epoch, from its welcome on.
@@ -50,15 +53,21 @@ struct SessionClient::Impl {
   Result<void> take(const Part& part, const Exchange::Heard& heard, std::uint64_t now) noexcept;
   Result<void> complete(std::uint64_t now) noexcept;
   std::uint64_t sign_due() const noexcept;
+  std::uint64_t rejoin_due() const noexcept;
   bool has_buttons_due(std::uint64_t now) const noexcept;
+  Epoch* shown_epoch() const noexcept { return shown ? shown.get() : current.get(); }
+  void look(std::uint64_t now) noexcept;
   void note(ClientEvent event) noexcept {
     if (event_count < events.size()) events[event_count++] = event;
   }
 
   SessionClientOptions options;
   SessionState state = SessionState::closed;
-  std::uint64_t nonce = 0;
+  std::uint64_t nonce = 0, token = 0;
   std::uint64_t opened_at = 0, join_at = 0, retry = 0;
+  bool rejoins = false;  // a join went in this silence
+  std::uint8_t seat = 0;
+  std::uint64_t looked_at = 0;     // [us] of the last call
   std::unique_ptr<Epoch> current;  // the newest
   std::unique_ptr<Epoch> shown;    // the one before, until the newest is live
   std::uint64_t sign_at = 0;       // [us] of the last sign of life
@@ -108,9 +117,12 @@ void SessionClient::Impl::close(SessionEvent event, LeaveReason reason) noexcept
   note({.kind = ClientEvent::Kind::closed, .reason = reason});
 }
 
-void SessionClient::open(std::uint64_t now, std::uint64_t nonce) noexcept {
+void SessionClient::open(std::uint64_t now, std::uint64_t nonce, std::uint64_t token) noexcept {
   if (!impl_->go(SessionEvent::open)) return;
   impl_->nonce = nonce;
+  impl_->token = token;
+  impl_->seat = 0;
+  impl_->rejoins = false;
   impl_->opened_at = impl_->join_at = now;
   impl_->retry = kFirstRetry;
   impl_->leaves = 0;
@@ -121,8 +133,15 @@ void SessionClient::open(std::uint64_t now, std::uint64_t nonce) noexcept {
 
 void SessionClient::close() noexcept { impl_->close(SessionEvent::close, LeaveReason::bye); }
 
+/// The program calls. If it did not for long, what comes now has waited.
+void SessionClient::Impl::look(std::uint64_t now) noexcept {
+  if (now > looked_at + kAsleep && shown_epoch() != nullptr && shown_epoch()->playout) shown_epoch()->playout->wake(now);
+  looked_at = now;
+}
+
 Result<void> SessionClient::handle_datagram(std::uint64_t now, std::span<const std::uint8_t> datagram) noexcept {
   Impl& in = *impl_;
+  in.look(now);
   const bool active = in.state == SessionState::receiving || in.state == SessionState::live;
   const bool before = is_before_epochs(datagram);
   if (!before && !active) return fail(Errc::checksum, "R-SES-1");
@@ -141,7 +160,8 @@ Result<void> SessionClient::handle_datagram(std::uint64_t now, std::span<const s
 }
 
 Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& said) noexcept try {
-  const bool repeated = current && said.serial <= current->welcome.serial && state != SessionState::joining;
+  const bool anew = rejoins && said.serial == 0 && said.epoch != token;  // the server does not know the session
+  const bool repeated = current && said.serial <= current->welcome.serial && state != SessionState::joining && !anew;
   if (repeated || !next_state(client_transitions(), state, SessionEvent::welcomed)) return {};
   const bool too_large = said.size > options.limits.header_bytes;
   Welcome taken = said;
@@ -154,8 +174,13 @@ Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& sai
     close(SessionEvent::rejected, LeaveReason::limits);
     return {};
   }
+  if (said.serial == 0) {
+    token = said.epoch;
+    seat = 0;
+  }
+  offset = {};
   sign_at = live_number = 0;
-  feels = false;
+  feels = rejoins = false;
   hash.reset();
   buttons = {};
   buttons_wait = false;
@@ -170,7 +195,9 @@ Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& said
   TACTUS_TRY(const Exchange::Heard heard, current->exchange.handle(now, said, take_part));
   if (heard.hash) hash = heard.hash;
   if (heard.tick) packet_at = now;
+  rejoins = rejoins && current->exchange.unanswered();
   if (current->playout) current->playout->heard(heard.number, heard.tick, now);
+  if (current->playout && heard.round_trip) current->playout->measured(*heard.round_trip, now);
   if (current->playout && heard.oldest < heard.tick) current->playout->late(*heard.oldest, now);
   if (buttons_wait && current->exchange.sent().highest_acknowledged() >= buttons_number && buttons_number > 0)
     buttons_wait = false;
@@ -181,10 +208,14 @@ Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& said
 Result<void> SessionClient::Impl::take(const Part& part, const Exchange::Heard& heard, std::uint64_t now) noexcept {
   if (const auto* clock = std::get_if<ClockPart>(&part)) {
     if (heard.round_trip) offset.add(clock->time, *heard.round_trip, now);
+    if (current->playout)
+      current->playout->told(static_cast<std::int64_t>(clock->time) - static_cast<std::int64_t>(current->welcome.start), now);
   } else if (const auto* piece = std::get_if<PiecePart>(&part)) {
     return current->pieces.take(piece->index, piece->bytes);
   } else if (const auto* pace = std::get_if<PacePart>(&part)) {
     if (current->exchange.path) current->exchange.path->shift(pace->from, pace->offset);
+  } else if (const auto* told = std::get_if<SeatPart>(&part)) {
+    seat = told->seat;
   }
   return {};
 }
@@ -198,11 +229,12 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     TACTUS_TRY(Receiver receiver,
                Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}, .limits = options.limits}));
     current->exchange.receive_with(std::move(receiver));
-    current->playout.emplace(scene->tick_rate, options.playout);
+    const ForceFade::Limits& limits = scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual;
+    current->playout.emplace(scene->tick_rate, options.playout, static_cast<std::int64_t>(limits.stale));
     if (options.role == Role::observer) return {};
     TACTUS_TRY(SharedScene device, device_scene(*scene));
     TACTUS_TRY(auto sender, Sender::create(std::move(device), device_sender_options(options.device)));
-    fade.set_limits(scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual);
+    fade.set_limits(limits);
     if (scene->has_paths()) {
       current->exchange.path = std::make_shared<DevicePath>(sender.scene());
       current->exchange.receiver->know(current->exchange.path);
@@ -240,12 +272,20 @@ std::uint64_t SessionClient::Impl::sign_due() const noexcept {
   return current->exchange.next_send(sent + pause);
 }
 
+/// When a client without an answer joins again.   pre  receiving or live
+std::uint64_t SessionClient::Impl::rejoin_due() const noexcept {
+  const auto since = current->exchange.unanswered();
+  if (!since) return std::numeric_limits<std::uint64_t>::max();
+  return rejoins ? join_at : *since + std::max(kUnanswered, 2 * current->exchange.patience());
+}
+
 bool SessionClient::Impl::has_buttons_due(std::uint64_t now) const noexcept {
   return buttons_wait && now >= current->exchange.next_send(buttons_at);
 }
 
 void SessionClient::handle_timeout(std::uint64_t now) noexcept {
   Impl& in = *impl_;
+  in.look(now);
   if (in.state == SessionState::joining && now >= in.opened_at + kJoinFor) in.close(SessionEvent::silent, LeaveReason::silence);
   if ((in.state == SessionState::receiving || in.state == SessionState::live) &&
       now >= in.current->exchange.heard_at() + in.options.silence)
@@ -279,12 +319,15 @@ std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::u
     return in.writer.write(Leave{in.leaving}, in.current->exchange.epoch());
   }
   if (in.state == SessionState::closed) return std::nullopt;
-  if (in.state == SessionState::joining) {
-    if (now < in.join_at) return std::nullopt;
+  const bool joins = in.state == SessionState::joining;
+  if (now >= (joins ? in.join_at : in.rejoin_due())) {
+    if (!joins && !std::exchange(in.rejoins, true)) in.retry = kFirstRetry;
     in.join_at = now + in.retry;
     in.retry = std::min(2 * in.retry, kLastRetry);
-    return in.writer.write(Join{in.options.role, in.nonce, in.options.limits.state_bytes, in.options.limits.header_bytes});
+    const DecodeLimits& limits = in.options.limits;
+    return in.writer.write(Join{in.options.role, in.nonce, limits.state_bytes, limits.header_bytes, in.token, in.options.seat});
   }
+  if (joins) return std::nullopt;
   const bool sign = now >= in.sign_due(), buttons = in.has_buttons_due(now);
   return in.current->exchange.poll(now, sign || buttons, [&](DatagramWriter& writer, std::uint64_t number) {
     if (in.buttons_wait) {
@@ -315,6 +358,7 @@ std::optional<std::uint64_t> SessionClient::next_timeout() const noexcept {
   if (in.state == SessionState::closed) return std::nullopt;
   if (in.state == SessionState::joining) return std::min(in.join_at, in.opened_at + kJoinFor);
   std::uint64_t due = in.current->exchange.heard_at() + in.options.silence;
+  due = std::min(due, in.rejoin_due());
   if (!in.current->exchange.sent().next()) return due;  // there is no number left to say anything with
   due = std::min(due, in.sign_due());
   if (in.buttons_wait) due = std::min(due, in.current->exchange.next_send(in.buttons_at));
@@ -328,13 +372,14 @@ Receiver* SessionClient::receiver() noexcept {
 }
 
 std::int64_t SessionClient::shown_tick(std::uint64_t now) noexcept {
-  Epoch* epoch = impl_->shown ? impl_->shown.get() : impl_->current.get();
+  impl_->look(now);
+  Epoch* const epoch = impl_->shown_epoch();
   return epoch != nullptr && epoch->playout ? epoch->playout->shown(now) : -1;
 }
 
 /// The fastest way up and down, and how much later than the fastest packet the tick is shown. No clock but the own one counts.
 std::optional<std::uint64_t> SessionClient::round_trip_shown(std::uint64_t now) const noexcept {
-  const Epoch* epoch = impl_->shown ? impl_->shown.get() : impl_->current.get();
+  const Epoch* const epoch = impl_->shown_epoch();
   if (epoch == nullptr || !epoch->playout) return std::nullopt;
   const auto& trip = epoch->exchange.sent().round_trip();
   if (!trip) return std::nullopt;
@@ -343,11 +388,20 @@ std::optional<std::uint64_t> SessionClient::round_trip_shown(std::uint64_t now) 
   return static_cast<std::uint64_t>(std::max<std::int64_t>(0, behind + trip->least));
 }
 
+/// Without news none; nor for a state that is ahead of all news, or too old whatever came.
 double SessionClient::force_share(std::uint64_t now) noexcept {
-  const Impl& in = *impl_;
-  const std::uint64_t heard = in.state == SessionState::live ? in.current->exchange.heard_at() : 0;
-  if (!in.feels) impl_->fade.release(now);
-  return std::ldexp(static_cast<double>(impl_->fade.share(now, heard)), -16);
+  Impl& in = *impl_;
+  shown_tick(now);  // of it the ages are
+  if (!in.feels) in.fade.release(now);
+  const bool is_live = in.state == SessionState::live;
+  std::uint64_t heard = is_live ? in.current->exchange.heard_at() : 0;
+  if (is_live) heard = std::min(heard, now - std::min(now, static_cast<std::uint64_t>(in.current->playout->ahead())));
+  return std::ldexp(static_cast<double>(in.fade.share(now, heard, round_trip_shown(now).value_or(0))), -16);
+}
+
+std::uint64_t SessionClient::unanswered(std::uint64_t now) const noexcept {
+  const bool runs = impl_->current != nullptr && impl_->state != SessionState::closed;
+  return runs ? now - std::min(now, impl_->current->exchange.unanswered().value_or(now)) : 0;
 }
 
 SessionStatus SessionClient::status() const noexcept {
@@ -358,6 +412,9 @@ SessionStatus SessionClient::status() const noexcept {
   if (!in.current) return out;
   const Epoch& epoch = *in.current;
   out.client = epoch.welcome.client;
+  out.seat = in.seat;
+  out.world = epoch.welcome.world;
+  out.token = in.token;
   out.declaration = epoch.pieces.size();
   out.received = std::min(epoch.pieces.received(), out.declaration);
   out.start = epoch.welcome.start;

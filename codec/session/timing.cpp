@@ -2,6 +2,7 @@
 #include <tactus/session/timing.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace tactus {
 
@@ -64,6 +65,8 @@ constexpr std::int64_t kLongestBurst = 150'000;                // [us]
 constexpr std::uint64_t kAdaptEvery = 100'000;                 // [us]
 constexpr std::int64_t kShrink = 100;                          // [us] in this time: 1 ms per second
 constexpr std::int64_t kLong = 150'000;                        // [us]: what is above goes sooner
+constexpr std::uint64_t kUndecided = 1'000'000;  // [us] in which a change is found to be one of the way or of a clock
+constexpr std::uint64_t kSettle = 20'000;        // [us] in which an end that woke up takes what has waited
 
 constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }
 
@@ -73,22 +76,94 @@ std::int64_t PlayoutClock::time_of(std::int64_t tick) const noexcept { return fl
 
 void PlayoutClock::heard(std::uint64_t number, std::optional<std::int64_t> tick, std::uint64_t now) noexcept {
   if (!options_.fixed) bursts_.heard(number, tick, now);
-  if (!tick) return;
-  const bool first = count_ == 0;
-  add(static_cast<std::int64_t>(now) - time_of(*tick), now);
+  const auto at = static_cast<std::int64_t>(now);
+  const bool first = shown_ < 0 && tick;
   if (first) shown_ = *tick;  // before it nothing is known
-  if (first || now >= adapted_at_ + kAdaptEvery) adapt(now);
+  if (shown_ < 0) return;
+  if (at - heard_at_ >= reach_) follows_ = false;
+  heard_at_ = at;
+  if (tick) learn(time_of(*tick), now);
+  else if (follows_ && number > newest_) news_ = std::max(news_, at - lead_);  // as new as its way lets it be
+  newest_ = std::max(newest_, number);
+  if (tick) add(at - time_of(*tick), now);
+  if (first || (tick && now >= adapted_at_ + kAdaptEvery && is_settled(now))) adapt(now);
+}
+
+void PlayoutClock::told(std::int64_t time, std::uint64_t now) noexcept {
+  if (shown_ < 0) return;
+  learn(time, now);
+  base_.add(static_cast<std::int64_t>(now) - time, now);
+  if (now >= adapted_at_ + kAdaptEvery && is_settled(now)) adapt(now);
+}
+
+/// The other end has come to this time of its ticks [us].
+void PlayoutClock::learn(std::int64_t time, std::uint64_t now) noexcept {
+  const std::int64_t lead = static_cast<std::int64_t>(now) - time;
+  if (time > news_ || !follows_) lead_ = lead;
+  news_ = std::max(news_, time);
+  follows_ = true;
+  if (now < settled_at_) return;
+  if (period_.leads == 0) {
+    const std::int64_t base = base_.value().value_or(lead);
+    const auto trip = trips_.value();
+    period_ = {.since = now,
+               .leads = 0,
+               .least = lead,
+               .trip = {},
+               .base_before = base_then_.value_or(base),
+               .trip_before = trip_then_ ? trip_then_ : trip};
+    trip_then_ = trip;
+    base_then_ = base;
+  }
+  period_.least = std::min(period_.least, lead);
+  ++period_.leads;
 }
 
 void PlayoutClock::late(std::int64_t tick, std::uint64_t now) noexcept {
   add(static_cast<std::int64_t>(now) - time_of(tick), now);
 }
 
+void PlayoutClock::measured(std::int64_t round_trip, std::uint64_t now) noexcept {
+  const auto off = [this](std::int64_t trip) { return std::abs(trip - period_.trip_before.value_or(0)); };
+  if (!period_.trip || off(round_trip) < off(*period_.trip)) period_.trip = round_trip;
+  trips_.add(round_trip, now);
+}
+
+void PlayoutClock::wake(std::uint64_t now) noexcept {
+  settled_at_ = now + kSettle;
+  count_ = next_ = 0;
+  period_ = {};
+}
+
 void PlayoutClock::add(std::int64_t lead, std::uint64_t now) noexcept {
   base_.add(lead, now);
+  if (now < settled_at_) return;
   leads_[next_] = {lead, now};
   next_ = (next_ + 1) % kRemembered;
   count_ = std::min(count_ + 1, kRemembered);
+}
+
+/// A way that changes its length changes that of round trips. If these are as before while every lead is later than any usual one, or
+/// one far earlier, a clock or the other end's ticks stood still: these leads are the first of a new time.
+/// out  false: there is a change, and not known yet of what
+bool PlayoutClock::is_settled(std::uint64_t now) noexcept {
+  const std::int64_t change = period_.least - period_.base_before;
+  const bool changed = period_.leads > 0 && (change > kClockStep + late_ || change < -kClockStep);
+  const bool known = period_.leads >= 2 && period_.trip && now >= period_.since + kAdaptEvery;
+  if (changed && period_.trip_before && !known && now < period_.since + kUndecided) return false;
+  if (changed && known && period_.trip_before && 2 * std::abs(*period_.trip - *period_.trip_before) < std::abs(change))
+    begin_anew(now);
+  period_ = {};
+  return true;
+}
+
+void PlayoutClock::begin_anew(std::uint64_t now) noexcept {
+  base_ = WindowedMinimum(kWindow);
+  base_.add(period_.least, now);
+  base_then_.reset();
+  count_ = next_ = 0;
+  news_ = static_cast<std::int64_t>(now) - lead_;
+  shown_ = std::min(shown_, floor_div((news_ + reach_) * tick_rate_, 1'000'000));
 }
 
 void PlayoutClock::adapt(std::uint64_t now) noexcept {
@@ -100,15 +175,17 @@ void PlayoutClock::adapt(std::uint64_t now) noexcept {
   std::size_t count = 0;
   for (std::size_t i = 0; i < count_; ++i)
     if (leads_[i].at + kRecent >= now) sorted_[count++] = leads_[i].lead;
+  if (count == 0) return;  // just awake
   const auto end = sorted_.begin() + static_cast<std::ptrdiff_t>(count);
   const auto late_at = sorted_.begin() + static_cast<std::ptrdiff_t>((count * 999 + 999) / 1000 - 1);
   std::nth_element(sorted_.begin(), late_at, end);
-  const std::int64_t base = *base_.value(), late = *late_at - base;
+  const std::int64_t base = *base_.value();
+  late_ = *late_at - base;
   std::int64_t early = 0;  // sum
   for (auto lead = sorted_.begin(); lead != end; ++lead) early += *late_at - *lead;
   const std::int64_t longest = kLongestBurst * tick_rate_ / 1'000'000;
   const std::int64_t slack = std::max(kSlack, time_of(bursts_.bridge(longest, now)));
-  const std::int64_t wanted = late + std::max(kLeastSlack, slack - early / static_cast<std::int64_t>(count));
+  const std::int64_t wanted = late_ + std::max(kLeastSlack, slack - early / static_cast<std::int64_t>(count));
   delay_ = std::max(wanted, delay_ - std::max(kShrink, (delay_ - kLong) / 64));
 }
 
@@ -116,9 +193,11 @@ std::int64_t PlayoutClock::shown(std::uint64_t now) noexcept {
   const auto base = base_.value();
   if (!base) return -1;
   const std::int64_t time = static_cast<std::int64_t>(now) - *base - delay_;
-  shown_ = std::max(shown_, floor_div(time * tick_rate_, 1'000'000));
+  shown_ = std::max(shown_, floor_div(std::min(time, news_ + reach_) * tick_rate_, 1'000'000));
   return shown_;
 }
+
+std::int64_t PlayoutClock::ahead() const noexcept { return shown_ < 0 ? 0 : std::max<std::int64_t>(0, time_of(shown_) - news_); }
 
 std::optional<std::int64_t> PlayoutClock::behind(std::uint64_t now) const noexcept {
   const auto base = base_.value();

@@ -18,15 +18,21 @@ namespace tactus {
 
 // ==== clock offset ====
 
+/// [us] What no way gets shorter or longer by from one datagram to the next unless a clock was stopped: a machine slept, a program stood.
+inline constexpr std::int64_t kClockStep = 30'000;
+
 /// The other end's clock less our own [us], from the fastest way there and the fastest way back of the last 10 s: these count as equally
 /// long. spec/70-session.md section 7. Internal to the library.
 class ClockOffset {
  public:
   /// in   time  [us] of the other end, when it sent what came at `now` [us];  round_trip  [us], without what the other end waited
   void add(std::uint64_t time, std::int64_t round_trip, std::uint64_t now) noexcept {
-    const auto back = static_cast<std::int64_t>(now) - static_cast<std::int64_t>(time);
+    const auto back = static_cast<std::int64_t>(now) - static_cast<std::int64_t>(time), there = round_trip - back;
+    const auto faster = [](const WindowedMinimum& way, std::int64_t sample) { return sample < *way.value() - kClockStep; };
+    const bool as_before = there_.value() && round_trip <= *there_.value() + *back_.value() + kClockStep / 3;
+    if (as_before && (faster(there_, there) || faster(back_, back))) back_ = there_ = WindowedMinimum(kWindow);
     back_.add(back, now);
-    there_.add(round_trip - back, now);
+    there_.add(there, now);
   }
   std::optional<std::int64_t> value() const noexcept {
     const auto there = there_.value(), back = back_.value();
@@ -68,14 +74,25 @@ class LossBursts {
 
 class PlayoutClock {
  public:
-  PlayoutClock(std::uint32_t tick_rate, const PlayoutOptions& options) noexcept : tick_rate_(tick_rate), options_(options) {}
+  /// in   reach  [us] that the tick shown is ahead of the news at most: older ones are worth nothing
+  PlayoutClock(std::uint32_t tick_rate, const PlayoutOptions& options, std::int64_t reach = 100'000) noexcept
+      : tick_rate_(tick_rate), options_(options), reach_(reach) {}
 
   /// A datagram came.   in   tick  highest of its packets, if it has any   time O(1), but 25 us each 100 ms
   void heard(std::uint64_t number, std::optional<std::int64_t> tick, std::uint64_t now) noexcept;
+  /// With the datagram that was heard the other end told the time of its ticks [us].   time as heard()
+  void told(std::int64_t time, std::uint64_t now) noexcept;
   /// A packet of an older tick came as well.   time O(1)
   void late(std::int64_t tick, std::uint64_t now) noexcept;
-  /// The tick to show; it never falls, nor below that of the first packet. -1: nothing was heard.
+  /// A round trip was measured [us]: it tells a longer way from a clock that stood still.   time O(1)
+  void measured(std::int64_t round_trip, std::uint64_t now) noexcept;
+  /// Nobody asked this end for long: what comes now has waited here, and tells nothing about the way.   time O(1)
+  void wake(std::uint64_t now) noexcept;
+  /// The tick to show; it never falls unless the other end's ticks begin anew, nor below that of the first packet. -1: nothing was
+  /// heard.
   std::int64_t shown(std::uint64_t now) noexcept;
+  /// [us] by which the tick shown last is ahead of the newest one that was heard of; 0: it is not.
+  std::int64_t ahead() const noexcept;
   /// [us] since the fastest packet would have brought the tick shown last; nothing: none was shown.
   std::optional<std::int64_t> behind(std::uint64_t now) const noexcept;
   std::int64_t delay() const noexcept { return delay_; }  ///< [us] behind the fastest packet of the last 10 s
@@ -83,13 +100,29 @@ class PlayoutClock {
  private:
   static constexpr std::size_t kRemembered = 2048;      // leads
   static constexpr std::uint64_t kRecent = 60'000'000;  // [us]: clocks drift
+  static constexpr std::uint64_t kWindow = 10'000'000;  // [us]
+  /// What 100 ms brought, or more until they tell enough: whether the other end's ticks, or our own clock, stood still.
+  struct Period {
+    std::uint64_t since = 0;  // [us]
+    std::size_t leads = 0;
+    std::int64_t least = 0;            // of the leads
+    std::optional<std::int64_t> trip;  // [us] the round trip most like those before
+    std::int64_t base_before = 0;      // until then
+    std::optional<std::int64_t> trip_before;
+  };
+  void learn(std::int64_t time, std::uint64_t now) noexcept;
   void add(std::int64_t lead, std::uint64_t now) noexcept;
   void adapt(std::uint64_t now) noexcept;
+  bool is_settled(std::uint64_t now) noexcept;
+  void begin_anew(std::uint64_t now) noexcept;
   std::int64_t time_of(std::int64_t tick) const noexcept;
 
   std::uint32_t tick_rate_;
   PlayoutOptions options_;
-  WindowedMinimum base_{10'000'000};  // of the leads
+  std::int64_t reach_;                              // [us]
+  WindowedMinimum base_{kWindow}, trips_{kWindow};  // of the leads, of the round trips
+  Period period_;
+  std::optional<std::int64_t> base_then_, trip_then_;  // at the begin of the last period
   LossBursts bursts_;
   struct Lead {
     std::int64_t lead = 0;
@@ -98,8 +131,14 @@ class PlayoutClock {
   std::array<Lead, kRemembered> leads_{};
   std::array<std::int64_t, kRemembered> sorted_{};
   std::size_t next_ = 0, count_ = 0;
-  std::int64_t delay_ = 0;
-  std::uint64_t adapted_at_ = 0;  // [us]; 0: never
+  std::int64_t delay_ = 0, late_ = 0;
+  std::uint64_t adapted_at_ = 0;                                      // [us]; 0: never
+  std::uint64_t settled_at_ = 0;                                      // [us]: what comes before has waited here
+  std::uint64_t newest_ = 0;                                          // number heard
+  std::int64_t heard_at_ = 0;                                         // [us]
+  std::int64_t news_ = std::numeric_limits<std::int64_t>::min() / 4;  // [us] time of the ticks up to which something was heard
+  std::int64_t lead_ = 0;                                             // [us] of it
+  bool follows_ = false;                                              // nothing is known to have stood still since
   std::int64_t shown_ = -1;
 };
 
@@ -183,6 +222,7 @@ class ForceFade {
   };
   static constexpr Limits kUsual{70'000, 100'000};
   static constexpr Limits kDriven{300'000, 400'000};  ///< of a client that works out what its device does
+  static constexpr Limits kOld{700'000, 1'000'000};   ///< of the state that is shown, as an answer to the own device
   static constexpr std::uint64_t kReturn = 500'000;   ///< [us]
   static constexpr std::int64_t kAll = 65536;
 
@@ -194,12 +234,10 @@ class ForceFade {
     looked_at_ = now;
   }
 
-  /// in   now >= heard  [us]; `now` never decreases.   out  x 2^-16
-  std::int64_t share(std::uint64_t now, std::uint64_t heard) noexcept {
-    const auto [fresh, stale] = limits_;
-    const std::uint64_t age = std::clamp(now - heard, fresh, stale);
-    const auto most = static_cast<std::int64_t>((stale - age) * static_cast<std::uint64_t>(kAll) / (stale - fresh));
-    if (now - looked_at_ > stale) {  // nobody looked: what was felt meanwhile is not known
+  /// in   now >= heard  [us]; `now` never decreases;  old  [us] age of the state that is shown.   out  x 2^-16
+  std::int64_t share(std::uint64_t now, std::uint64_t heard, std::uint64_t old = 0) noexcept {
+    const std::int64_t most = std::min(left(now - heard, limits_), left(old, kOld));
+    if (now - looked_at_ > limits_.stale) {  // nobody looked: what was felt meanwhile is not known
       share_ = 0;
       looked_at_ = now;
     }
@@ -211,6 +249,11 @@ class ForceFade {
   }
 
  private:
+  static std::int64_t left(std::uint64_t age, const Limits& limits) noexcept {
+    const std::uint64_t rest = limits.stale - std::clamp(age, limits.fresh, limits.stale);
+    return static_cast<std::int64_t>(rest * static_cast<std::uint64_t>(kAll) / (limits.stale - limits.fresh));
+  }
+
   Limits limits_ = kUsual;
   std::int64_t share_ = 0;
   std::uint64_t looked_at_ = 0;
