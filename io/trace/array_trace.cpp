@@ -61,7 +61,7 @@ class ArrayWriter {
   double time_of(std::size_t row) const { return static_cast<double>(arrays_.time[rows_[row]] - start_) / kSecond; }
   bool is_pause(double time);
   RigidSample sample_of(const Lane& lane, std::size_t row) const;
-  const SampleTrack<std::int64_t>& lane_at(Lane& lane, std::int64_t time) const;
+  SampleTrack<std::int64_t>& lane_at(Lane& lane, std::int64_t time) const;
   void make(std::int64_t tick, TraceFrame& frame);
   TraceInfo info() const;
 
@@ -111,7 +111,8 @@ Result<void> ArrayWriter::add_lane(std::string where, std::span<const double> va
   }
   note_missing(lane);
   if (width == 4) note_mended(lane);
-  lane.track = SampleTrack<std::int64_t>({.gap = arrays_.gap * kSecond, .same = kOnGrid * kSecond / rate_});
+  lane.track =
+      SampleTrack<std::int64_t>({.gap = arrays_.gap * kSecond, .same = kOnGrid * kSecond / rate_, .tick = kSecond / rate_});
   lanes_.push_back(std::move(lane));
   return {};
 }
@@ -232,7 +233,7 @@ RigidSample ArrayWriter::sample_of(const Lane& lane, std::size_t row) const {
 }
 
 /// in  time  [ns] since the start, rising
-const SampleTrack<std::int64_t>& ArrayWriter::lane_at(Lane& lane, std::int64_t time) const {
+SampleTrack<std::int64_t>& ArrayWriter::lane_at(Lane& lane, std::int64_t time) const {
   for (; lane.taken < lane.rows.size(); ++lane.taken) {
     const std::size_t row = lane.rows[lane.taken];
     const std::int64_t at = arrays_.time[rows_[row]] - start_;
@@ -246,19 +247,19 @@ const SampleTrack<std::int64_t>& ArrayWriter::lane_at(Lane& lane, std::int64_t t
 void ArrayWriter::make(std::int64_t tick, TraceFrame& frame) {
   const auto time = static_cast<std::int64_t>(time_of_tick(tick, rate_));
   std::size_t lane = 0;
-  const auto next = [&]() -> const SampleTrack<std::int64_t>& { return lane_at(lanes_[lane++], time); };
+  const auto next = [&]() -> SampleTrack<std::int64_t>& { return lane_at(lanes_[lane++], time); };
   const auto speed_of = [](const auto& track) { return track.is_known() ? track.value().pose.position : Vec3{}; };
   for (std::size_t i = 0; i < arrays_.objects.size(); ++i) {
     const SampledObject& of = arrays_.objects[i];
     RigidSample& out = frame.objects[i];
-    out.pose.position = next().value().pose.position;
-    if (!of.rotation.empty()) out.pose.rotation = next().value().pose.rotation;
+    out.pose.position = next().pose().position;
+    if (!of.rotation.empty()) out.pose.rotation = next().pose().rotation;
     if (!of.velocity.empty()) out.velocity = speed_of(next());
     if (!of.angular_velocity.empty()) out.angular_velocity = speed_of(next());
   }
   for (std::size_t i = 0; i < arrays_.users.size(); ++i) {
     UserSample& out = frame.users[i];
-    if (!arrays_.users[i].device.empty()) out.device.position = next().value().pose.position;
+    if (!arrays_.users[i].device.empty()) out.device.position = next().pose().position;
     if (!arrays_.users[i].force.empty()) out.force = out.server_force = next().vector();
     out.contact = {};
     out.contact.device = out.device.position;

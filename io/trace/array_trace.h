@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A trace from arrays: samples of objects and users at the same times, evenly spaced or not.
 ///
-/// Ticks lie on a grid of the tick rate. Rows that lie on it are taken as they are; between others positions and forces follow a straight
-/// line and rotations an arc. A sample with a value that is not finite, or a rotation whose length is off 1 by more than 2 %, is missing: it
+/// Ticks lie on a grid of the tick rate. Rows that lie on it are taken as they are; between others poses follow a parabola where the motion
+/// bends alike at both rows, else a straight line and an arc; forces and velocities follow lines (sample_track.h). A sample with a value that is not finite, or a rotation whose length is off 1 by more than 2 %, is missing: it
 /// is interpolated where its neighbours are at most `gap` apart, else the last one is held, a force no longer than `gap` and a velocity not
 /// at all: then they are 0. No ticks are made between rows that are farther apart than that.
 #pragma once

@@ -265,10 +265,8 @@ CsvResult<void> CsvTimeline::ask_for_ticks(const CsvRow& row, const Instant& at)
 bool CsvTimeline::is_ready(std::int64_t tick) const {
   const Instant at{tick, 0};
   if (now_.since(at) < kSame) return false;
-  if (now_.since(at) > gap_) return true;
   return std::ranges::all_of(channels_, [&](const SampleTrack<Instant>& track) {
-    const auto* newest = track.newest();
-    return newest != nullptr && (newest->at.since(at) > -kSame || now_.since(newest->at) > gap_);
+    return track.is_empty() ? now_.since(at) > gap_ : track.is_settled(at, now_);
   });
 }
 
@@ -287,6 +285,7 @@ bool CsvTimeline::sample_at(std::size_t channel, std::int64_t tick, RigidSample&
   track.move_to({tick, 0});
   if (track.is_empty()) return false;
   out = track.value();
+  out.pose = track.pose();
   using Place = SampleTrack<Instant>::Place;
   if (track.place() == Place::on) return true;
   if (track.place() == Place::between) largest_gap_ = std::max(largest_gap_, track.span());

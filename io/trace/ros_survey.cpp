@@ -295,9 +295,12 @@ void RosSurvey::tell_rate(ReadNotes& notes) const {
     notes.add(place_of(densest_), "more than half of the time nothing is recorded: check the unit of the times, or give --rate");
   for (std::uint32_t i = 0; i < facts_.size(); ++i) {
     const auto own = clock_.pace(i, facts_);
-    if (moving_[i] && own.period > 0 && std::abs(tick_rate_ * own.period - 1) > 0.1)
-      notes.add(place_of(i), text(1 / own.period, "%.4g") + " samples per second are interpolated to " +
-                                 std::to_string(tick_rate_) + " ticks");
+    if (!moving_[i] || !(own.period > 0) || std::abs(tick_rate_ * own.period - 1) <= 0.1) continue;
+    const Kind kind = samples_.sources()[i].kind;
+    const bool is_curve = (kind == Kind::pose || kind == Kind::link) && tick_rate_ * own.period > 1.5;
+    notes.add(place_of(i), text(1 / own.period, "%.4g") + " samples per second are interpolated to " +
+                               std::to_string(tick_rate_) + " ticks" +
+                               (is_curve ? ", on parabolas where the motion bends alike at neighbours, else on lines" : ""));
   }
 }
 
