@@ -234,10 +234,10 @@ void RosSurvey::tell_clock(ReadNotes& notes) const {
               "the first is message " + std::to_string(strays_.begin()->first));
   for (const auto& step : steps_.steps()) {
     const std::int64_t before = steps_.added_at(step.ordinal - 1);
-    notes.add(
-        "",
-        "the clock was set back by " + seconds(1e-9 * static_cast<double>(step.added - before)) + "; what follows goes on there",
-        text_of_time(step.at));
+    notes.add("",
+              std::string("the clock was set ") + (step.added > before ? "back" : "forward") + " by " +
+                  seconds(1e-9 * std::abs(static_cast<double>(step.added - before))) + "; what follows goes on there",
+              text_of_time(step.at));
   }
   if (steps_.disorder() > 0)
     notes.add("", "messages cross in time by up to " + seconds(1e-9 * static_cast<double>(steps_.disorder())) + "; sorted");

@@ -117,7 +117,7 @@ std::vector<ReadNote> TraceReader::notes() const {
 const std::vector<ReadLoss>& TraceReader::losses() const noexcept { return impl_->mcap.losses(); }
 
 Diagnostic TraceReader::explain(const Error& error) const {
-  if (std::string cause = impl_->assembler->detail(); !cause.empty()) return {.error = error, .cause = std::move(cause)};
+  if (const Diagnostic* refused = impl_->assembler->refused()) return *refused;
   return impl_->mcap.explain(error);
 }
 
