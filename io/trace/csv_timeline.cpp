@@ -111,14 +111,11 @@ CsvResult<CsvImport> CsvTimeline::finish() {
         "If that is right, say --tick-rate " + std::to_string(plan_.info.tick_rate) + "; else give the rate, or --time-unit."));
   if (const auto finished = writer_->finish(); !finished) return tl::unexpected(Diagnostic{finished.error()});
   const double period = 1.0 / plan_.info.tick_rate;
-  const auto tell = [&](std::uint64_t count, const std::string& what, const std::string& detail) {
-    if (count > 0) plan_.notes.add("", what + ": " + std::to_string(count) + detail);
-  };
   const std::string gap = number_text(gap_ * period) + " s (--gap)";
-  tell(made_, "samples interpolated", ", over at most " + number_text(largest_gap_ * period) + " s");
-  tell(left_out_, "ticks left out", ": nothing was recorded for more than " + gap);
-  tell(rested_, "samples held", ", as others of the table go on: none for more than " + gap);
-  tell(repeated_, "rows with the time, or the tick, of a row before", "; the last of each counts");
+  plan_.notes.add("", "a sample is interpolated, over at most " + number_text(largest_gap_ * period) + " s", {}, made_);
+  plan_.notes.add("", "a tick is left out: nothing was recorded for more than " + gap, {}, left_out_);
+  plan_.notes.add("", "a sample is held, as others of the table go on: none for more than " + gap, {}, rested_);
+  plan_.notes.add("", "a row with the time, or the tick, of a row before; the last of each counts", {}, repeated_);
   done_.notes = std::move(plan_.notes);
   return done_;
 }
