@@ -295,9 +295,10 @@ Outcome run(const ImportOptions& options) {
 /// How lines and numbers of a table are meant.
 void add_text_options(Command& command, ImportOptions& options) {
   command
-      .add_option("--time-unit", options.time_unit,
-                  "Unit of the times [of the column's name, or s]; tick: they count ticks of --tick-rate")
-      ->one_of({"s", "ms", "us", "ns", "min", "h", "day", kTickUnit})
+      .add_option(
+          "--time-unit", options.time_unit,
+          "Unit of the times [of the column's name, or s]; tick: they count ticks of --tick-rate; hhmmss: 123559.5 is 12:35:59.5")
+      ->one_of({"s", "ms", "us", "ns", "min", "h", "day", kTickUnit, kClockUnit})
       ->type_name("UNIT");
   command.add_option("--angle-unit", options.angle_unit, "Unit of angles and of angular velocities [of the names]")
       ->one_of({"rad", "deg"})

@@ -50,7 +50,8 @@ enum class AngularVelocityFrame : std::uint8_t { world, body };
 
 inline constexpr const char* kZeroColumn = "0";  ///< in a vector: a component that the table lacks and that is 0
 
-inline constexpr const char* kTickUnit = "tick";  ///< as time_unit: the column counts ticks of tick_rate
+inline constexpr const char* kTickUnit = "tick";     ///< as time_unit: the column counts ticks of tick_rate
+inline constexpr const char* kClockUnit = "hhmmss";  ///< as time_unit: 123559.5 is 12:35:59.5, as of NMEA
 
 enum class CsvNames : std::uint8_t {
   automatic,  ///< csv_header.h
@@ -109,7 +110,7 @@ struct CsvMapping : CsvQuantities {
   double length_scale = 1.0;  ///< metres per unit of the file's lengths
   bool says_length = false;   ///< length_scale was given, and must not contradict the names
   std::string time_unit{}, angle_unit{},
-      force_unit{};  ///< "ms" (or kTickUnit), "deg", "mN"; empty: as the names say, else s, rad and N
+      force_unit{};  ///< "ms" (or kTickUnit, kClockUnit), "deg", "mN"; empty: as the names say, else s, rad and N
   QuaternionOrder quaternion_order = QuaternionOrder::by_names;
   std::string euler_order{};                 ///< "ZYX": about z, then the turned y, then the turned x; "xyz": about fixed axes
   std::array<std::int8_t, 3> axes{1, 2, 3};  ///< what the trace's x, y and z are in the file: {1, -3, 2} is x, -z, y

@@ -99,6 +99,23 @@ std::size_t NamedPlanner::column(const std::string& name) {
     plan_.used[found[0]] = true;
     return found[0];
   }
+  std::vector<std::string> words;  // of a line of "t:0 x:1", whatever stands between
+  for (const std::string& n : plan_.names) {
+    std::vector<std::string> own;
+    split_fields(n, kBlanks, own);
+    words.insert(words.end(), own.begin(), own.end());
+  }
+  const auto is_pair = [](const std::string& n) {
+    const std::size_t mark = n.find_first_of(":=");
+    return mark != std::string::npos && mark > 0 && std::isalpha(static_cast<unsigned char>(n[0])) != 0 &&
+           is_value(n.substr(mark + 1));
+  };
+  if (found.empty() && std::ranges::all_of(words, is_pair)) {
+    mistake(Errc::malformed, "R-CSV-2", name,
+            "Fields are pairs of name and value: `sed -E 's/[A-Za-z_][A-Za-z_0-9]*[:=]//g' FILE >TABLE` leaves the values, whose "
+            "columns are '#1', '#2', ...");
+    return 0;
+  }
   std::string remedy =
       found.empty() ? "The table has the columns "
                     : "Several columns are called so: name one by its number, such as #" + std::to_string(found[0] + 1) + ", of ";
@@ -194,6 +211,8 @@ void NamedPlanner::plan_time() {
     plan_.time_unit = std::llround(1e9 / mapping_.tick_rate);
     return;
   }
+  plan_.time_is_clock = mapping_.time_unit == kClockUnit;
+  if (plan_.time_is_clock) return;
   plan_.time_unit = std::llround(1e9 * scale_of(*plan_.time, CsvDimension::time));
   if (columns.size() == 2) plan_second_time(columns[1]);
   else guess_fraction();
