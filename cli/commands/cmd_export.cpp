@@ -121,7 +121,7 @@ Outcome write_layout(const ExportFoxgloveOptions& options, const TraceInfo& info
 }
 
 Outcome write_all(MotionSource& source, FoxgloveWriter& writer, const ExportFoxgloveOptions& options, Report& report) {
-  Progress progress("export", source.frame_count(), options.common.progress());
+  ReadProgress progress("export", source.trace(), options.common.progress());
   TraceFrame frame;
   while (true) {
     TACTUS_TRY(const bool more, source.next(frame));
