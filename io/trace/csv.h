@@ -75,7 +75,7 @@ enum class QuaternionOrder : std::uint8_t {
 enum class CsvDateOrder : std::uint8_t { by_digits, mdy, dmy };  ///< of dates such as 05/06/2024
 
 /// Which column feeds which quantity of an object or a user; an empty name means "not there". A column may also be named by its number,
-/// "#3", without its unit, or by the end of its name where that is unique. At most one kind of rotation.
+/// "#3", without its unit, or by the end of its name where that is unique. At most one kind of rotation of each.
 struct CsvQuantities {
   std::array<std::string, 3> position;  ///< [m]; empty: no object, a user alone
   std::array<std::string, 4> rotation;  ///< w, x, y, z or as CsvMapping::quaternion_order says; empty: no rotation
@@ -86,8 +86,10 @@ struct CsvQuantities {
   std::array<std::string, 3> velocity;          ///< [m/s]; empty: backward differences, 0 where a segment begins
   std::array<std::string, 3> angular_velocity;  ///< [rad/s]; empty: likewise
   std::array<std::string, 3> device;            ///< [m] probe of the user
-  std::array<std::string, 4> device_rotation;   ///< of the probe, as rotation; needs device
-  std::array<std::string, 3> force;             ///< [N] on the user; one recorded force serves for client and server
+  std::array<std::string, 4> device_rotation;   ///< of the probe, as rotation, or as the three others; needs device
+  std::array<std::string, 3> device_euler, device_rotation_vector;
+  std::array<std::string, 9> device_rotation_matrix;
+  std::array<std::string, 3> force;  ///< [N] on the user; one recorded force serves for client and server
 };
 
 /// Another object, user, or both, of a table that has several.

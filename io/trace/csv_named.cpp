@@ -366,15 +366,21 @@ void NamedPlanner::plan_subject(const CsvQuantities& q, const std::string& objec
   }
   if (has_angular_velocity && !has_rotation && mapping_.angular_velocity_frame == AngularVelocityFrame::body)
     mistake(Errc::invalid_argument, "R-CSV-8", "rotation");
-  const bool has_device = has_group(q.device), has_force = has_group(q.force), has_hold = has_group(q.device_rotation);
+  const bool has_device = has_group(q.device), has_force = has_group(q.force);
+  CsvQuantities turn;  // of the device, by the same door
+  turn.rotation = q.device_rotation, turn.euler = q.device_euler;
+  turn.rotation_vector = q.device_rotation_vector, turn.rotation_matrix = q.device_rotation_matrix;
+  CsvChannel device{.kind = CsvChannel::Kind::device};
+  plan_rotation(turn, device);
+  const bool has_hold = device.turn != CsvChannel::Turn::none;
   if (has_hold && !has_device)
-    mistake(Errc::invalid_argument, "R-CSV-8", q.device_rotation[0], "Map the position of the device, too.");
+    mistake(Errc::invalid_argument, "R-CSV-8", "device_rotation", "Map the position of the device, too.");
   if (!has_device && !has_force) return;
   const auto index = static_cast<std::uint32_t>(plan_.info.users.size());
   plan_.info.users.push_back({user});
   if (has_device) {
-    CsvChannel device{.kind = CsvChannel::Kind::device, .index = index, .position = vector_of(q.device, CsvDimension::length)};
-    if (has_hold) device.turn = CsvChannel::Turn::quaternion, plan_quaternion(q.device_rotation, device);
+    device.index = index;
+    device.position = vector_of(q.device, CsvDimension::length);
     plan_.info.users.back().senses.orientation = has_hold;
     plan_.channels.push_back(device);
   }

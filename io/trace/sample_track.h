@@ -38,7 +38,7 @@ struct SampleCurve {
     Vec3 off(double h, double share) const noexcept { return (-0.5 * h * h * share * (1 - share)) * bend; }
   };
   Part linear, angular;
-  double h = 0;
+  double span = 0;  ///< h
 
   /// in  before, after  times of the chords beside
   static Part part(const Vec3& u, const Vec3& v, const Vec3& w, double before, double h, double after) noexcept {
@@ -178,8 +178,8 @@ Pose SampleTrack<Time>::pose() noexcept {
   Pose pose = value().pose;
   if (place_ != Place::between || !is_sparse(at_)) return pose;
   const SampleCurve& way = curve();
-  pose.position = pose.position + way.linear.off(way.h, share_);
-  if (way.angular.bend != Vec3{}) pose.rotation = rotation_of(way.angular.off(way.h, share_)) * pose.rotation;
+  pose.position = pose.position + way.linear.off(way.span, share_);
+  if (way.angular.bend != Vec3{}) pose.rotation = rotation_of(way.angular.off(way.span, share_)) * pose.rotation;
   return pose;
 }
 
@@ -189,8 +189,8 @@ RigidSample SampleTrack<Time>::moving(double seconds) noexcept {
   RigidSample value{pose(), {}, {}};
   if (is_sparse(at_)) {
     const SampleCurve& way = curve();
-    value.velocity = (1 / seconds) * way.linear.velocity(way.h, share_);
-    value.angular_velocity = (1 / seconds) * way.angular.velocity(way.h, share_);
+    value.velocity = (1 / seconds) * way.linear.velocity(way.span, share_);
+    value.angular_velocity = (1 / seconds) * way.angular.velocity(way.span, share_);
     return value;
   }
   if (!has_slopes_) {
@@ -242,8 +242,8 @@ const SampleCurve& SampleTrack<Time>::curve() noexcept {
   curve_ = {{way.linear, {}, {}}, {way.angular, {}, {}}, time(at_, at_ + 1)};
   if (first != at_ && last != at_ + 1) {
     const Twist from = chord(first, at_), to = chord(at_ + 1, last);
-    curve_.linear = SampleCurve::part(from.linear, way.linear, to.linear, time(first, at_), curve_.h, time(at_ + 1, last));
-    curve_.angular = SampleCurve::part(from.angular, way.angular, to.angular, time(first, at_), curve_.h, time(at_ + 1, last));
+    curve_.linear = SampleCurve::part(from.linear, way.linear, to.linear, time(first, at_), curve_.span, time(at_ + 1, last));
+    curve_.angular = SampleCurve::part(from.angular, way.angular, to.angular, time(first, at_), curve_.span, time(at_ + 1, last));
   }
   has_curve_ = true;
   return curve_;
