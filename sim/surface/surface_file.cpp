@@ -192,7 +192,8 @@ class SurfaceMaker {
         soup_.notes.add("vertices", "one that joins parts of the surface at a point alone is split: each part has its own",
                         soup_.first_number ? "vertex " + number(file_.vertex[corner]) : "at " + place_of(mesh.vertices[corner]));
         file_.vertex.push_back(file_.vertex[corner]);
-        mesh.vertices.push_back(Vec3(mesh.vertices[corner]));
+        const Vec3 place = mesh.vertices[corner];
+        mesh.vertices.push_back(place);
         corner = own[i] = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
       }
     }

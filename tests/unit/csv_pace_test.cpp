@@ -240,7 +240,7 @@ TEST(CsvPace, WhereTheTimeFallsTheNextRecordingBeginsIfItIsSaid) {
   EXPECT_EQ(outcome.done.segments, 3u);
   EXPECT_EQ(outcome.frames[400].objects[0].pose.position.x, 0);
   EXPECT_EQ(outcome.frames[400].objects[0].velocity.x, 0);
-  EXPECT_EQ(notes_of(outcome), (std::vector<std::string>{"the time falls: another segment begins",
+  EXPECT_EQ(notes_of(outcome), (std::vector<std::string>{"the time falls: another segment begins x2",
                                                          "a line of names comes again and is left out x2"}));
 }
 
