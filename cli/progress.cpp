@@ -68,7 +68,7 @@ void Progress::draw(std::uint64_t done, Clock::time_point now) {
   drawn_ = true;
   const double seconds = std::chrono::duration<double>(now - start_).count();
   if (!total_ || *total_ == 0) {
-    fmt::print(stderr, "\r{} {} in {:.0f} s\x1b[K", label_, done, seconds);
+    fmt::print(stderr, "\r{} {} so far, {:.0f} s\x1b[K", label_, done, seconds);
   } else {
     const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(*total_));
     const std::size_t width = width_beside(label_);

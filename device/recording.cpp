@@ -29,7 +29,11 @@ tl::expected<std::vector<RecordedSample>, Diagnostic> read_samples(TraceReader& 
   TraceFrame frame;
   for (;;) {
     const auto more = reader.next(frame);
-    if (!more) return refuse(path, more.error());
+    if (!more) {
+      Diagnostic error = reader.explain(more.error());
+      error.file = path;
+      return tl::unexpected(std::move(error));
+    }
     if (!*more) break;
     if (samples.size() == kMostSamples) return refuse(path, fail(Errc::limit_exceeded, "R-API-11").value());
     samples.push_back({frame.tick, frame.users[user].device, frame.users[user].force});

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "handles.h"
+#include "trace_handle.h"
 
 struct tactus_arrays {
   tactus::SampledArrays arrays;
@@ -22,14 +22,16 @@ std::span<const double> rows_of(const tactus_arrays& arrays, const double* value
   return values == nullptr ? std::span<const double>() : std::span(values, width * arrays.arrays.time.size());
 }
 
+std::string text_of(const ReadNote& note) {
+  std::string out = (note.where.empty() ? "" : note.where + ": ") + note.what;
+  if (note.count > 1) out += " (" + std::to_string(note.count) + (note.first.empty() ? ")" : "; first " + note.first + ")");
+  else if (!note.first.empty()) out += " (" + note.first + ")";
+  return out;
+}
+
 std::string text_of(const ReadNotes& notes) {
   std::string out;
-  for (const ReadNote& note : notes.all()) {
-    out += (note.where.empty() ? "" : note.where + ": ") + note.what;
-    if (note.count > 1) out += " (" + std::to_string(note.count) + "; first " + note.first + ")";
-    else if (!note.first.empty()) out += " (" + note.first + ")";
-    out += '\n';
-  }
+  for (const ReadNote& note : notes.all()) out += text_of(note) + '\n';
   return out;
 }
 
@@ -93,10 +95,22 @@ tactus_status tactus_arrays_write(tactus_arrays* arrays, const char* path, tactu
   return call(error, [&]() -> Outcome {
     if (arrays == nullptr || path == nullptr) return refuse();
     ReadNotes notes;
+    error_words().clear();
     const auto written = write_arrays(arrays->arrays, path, notes);
     arrays->notes = text_of(notes);
-    if (!written) return tl::make_unexpected(written.error());
-    return TACTUS_OK;
+    if (written) return TACTUS_OK;
+    error_words() = text_of(notes.all().empty() ? ReadNote{} : notes.all().back());
+    return tl::make_unexpected(written.error());
+  });
+}
+
+tactus_status tactus_arrays_device_rotation(tactus_arrays* arrays, const char* user, const double* rotation,
+                                            tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (arrays == nullptr || user == nullptr || rotation == nullptr) return refuse();
+    for (SampledUser& of : arrays->arrays.users)
+      if (of.name == user) return of.rotation = rows_of(*arrays, rotation, 4), TACTUS_OK;
+    return fail(Errc::invalid_argument, "R-API-5");
   });
 }
 

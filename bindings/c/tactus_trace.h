@@ -78,6 +78,10 @@ typedef struct tactus_trace_coding {
   const tactus_deformable_bounds* deformable;
 } tactus_trace_coding;
 
+/* What the last call of this thread that opened, read or wrote a recording said when it failed, beyond its rule: file, topic or row, time,
+   value and remedy, such as "a.mcap: /cup/pose, at 3 s: ...". "" when it did not fail, or the rule says all. Lives until the next such call. */
+TACTUS_API const char* tactus_trace_error_words(void);
+
 /* in   path  "-": standard input   err  R-TRC */
 TACTUS_API tactus_status tactus_trace_open(const char* path, tactus_trace** trace, tactus_error* error);
 /* The same from memory that outlives the trace. */
@@ -141,7 +145,7 @@ typedef struct tactus_arrays tactus_arrays;
 
 /* Everything that is handed over stays the caller's and lives until _write. A sample that is not a number, or a rotation of length 0, is
    missing: <tactus/trace/array_trace.h> says what becomes of it, and of times with jitter.
-   in   time  [ns] of each row, rising; INT64_MIN: missing;  tick_rate  per second, 0: found from the times;  gap  s; longest to interpolate
+   in   time  [ns] of each row, not falling; INT64_MIN: missing;  tick_rate  per second, 0: found from the times;  gap  s; longest to interpolate
         over, 0: 0.1 */
 TACTUS_API tactus_status tactus_arrays_create(const int64_t* time, size_t rows, uint32_t tick_rate, double gap,
                                               const char* source, tactus_arrays** arrays, tactus_error* error);
@@ -154,6 +158,9 @@ TACTUS_API tactus_status tactus_arrays_object(tactus_arrays* arrays, const char*
 /* Rows of a user, world frame.   in  device  3 per row [m];  force  3 per row [N] on the user; one of them may be NULL */
 TACTUS_API tactus_status tactus_arrays_user(tactus_arrays* arrays, const char* name, const double* device, const double* force,
                                             tactus_error* error);
+/* How the device of a user is turned.   in  rotation  4 per row, w x y z, any length   err  R-API-5 no such user */
+TACTUS_API tactus_status tactus_arrays_device_rotation(tactus_arrays* arrays, const char* user, const double* rotation,
+                                                       tactus_error* error);
 /* What a user touched, so that its forces have a bound: at each tick the force stretches a spring between the device and the object.
    in   stiffness  N/m;  kind  TACTUS_CONTACT_SURFACE: what lies along the force counts; _SPRING: the whole vector, as of a grip;
    at_origin  1: the force acts at the object's origin, of a user without a device   err  R-API-5, 4: when it is written */

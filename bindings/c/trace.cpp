@@ -122,27 +122,53 @@ Result<std::vector<std::uint8_t>> declaration(const tactus_trace& trace, const t
   return write_scene(*scene);
 }
 
+/// The next frame; an error with its words.   in  path  empty: memory
+Result<void> read_frame(tactus_trace& trace) {
+  const auto more = trace.reader.next(trace.frame);
+  trace.has_frame = more.value_or(false);
+  if (more) return {};
+  Diagnostic error = trace.reader.explain(more.error());
+  error.file = trace.path;
+  return tell(error);
+}
+
 /// A trace at its first frame, for the caller.
 Outcome hand_out(tactus_trace made, tactus_trace** trace) {
   auto out = std::make_unique<tactus_trace>(std::move(made));
-  TACTUS_TRY(out->has_frame, out->reader.next(out->frame));
+  TACTUS_CHECK(read_frame(*out));
   *trace = out.release();
   return TACTUS_OK;
 }
 
 }  // namespace
+
+std::string& error_words() noexcept {
+  static thread_local std::string words;
+  return words;
+}
+
+tl::unexpected<Error> tell(const Diagnostic& error) {
+  const bool says_more = !place_of(error).empty() || !error.cause.empty() || !error.remedy.empty();
+  if (says_more) error_words() = to_string(error);
+  return tl::unexpected(error.error);
+}
+
 }  // namespace tactus::c
 
 using namespace tactus;
 using namespace tactus::c;
 
+const char* tactus_trace_error_words(void) { return error_words().c_str(); }
+
 tactus_status tactus_trace_coding_init(tactus_trace_coding* coding, size_t size) { return init(coding, size, kCoding); }
 
 tactus_status tactus_trace_open(const char* path, tactus_trace** trace, tactus_error* error) {
   return call(error, [&]() -> Outcome {
+    error_words().clear();
     if (path == nullptr || trace == nullptr) return refuse();
-    TACTUS_TRY(TraceReader reader, TraceReader::open(path));
-    return hand_out({.reader = std::move(reader), .path = path}, trace);
+    auto reader = TraceReader::open(path, {});
+    if (!reader) return tell(reader.error());
+    return hand_out({.reader = *std::move(reader), .path = path}, trace);
   });
 }
 
@@ -150,8 +176,10 @@ tactus_status tactus_trace_open_memory(const uint8_t* bytes, size_t size, tactus
   return call(error, [&]() -> Outcome {
     TACTUS_TRY(const auto all, span_of(bytes, size));
     if (trace == nullptr) return refuse();
-    TACTUS_TRY(TraceReader reader, TraceReader::open_memory(all));
-    return hand_out({.reader = std::move(reader), .path = {}, .bytes = all}, trace);
+    error_words().clear();
+    auto reader = TraceReader::open_memory(all, {});
+    if (!reader) return tell(reader.error());
+    return hand_out({.reader = *std::move(reader), .path = {}, .bytes = all}, trace);
   });
 }
 
@@ -254,11 +282,9 @@ tactus_status tactus_trace_next(tactus_trace* trace, int64_t* tick, tactus_rigid
       return count == 0 || (count == all && out != nullptr);
     };
     if (!fits(object_count, info.objects.size(), objects) || !fits(user_count, info.users.size(), users)) return refuse();
+    error_words().clear();
     if (!trace->has_frame) return TACTUS_NOTHING;
-    if (!trace->is_first) {
-      trace->has_frame = false;  // also after an error
-      TACTUS_TRY(trace->has_frame, trace->reader.next(trace->frame));
-    }
+    if (!trace->is_first) TACTUS_CHECK(read_frame(*trace));
     trace->is_first = false;
     if (!trace->has_frame) return TACTUS_NOTHING;
     *tick = trace->frame.tick;

@@ -20,6 +20,11 @@ struct tactus_trace {
 
 namespace tactus::c {
 
+/// What the last failing call of this thread has beyond its rule: tactus_trace_error_words().
+std::string& error_words() noexcept;
+/// The rule of an error whose words are kept.
+tl::unexpected<Error> tell(const Diagnostic& error);
+
 /// err  R-API-12 null
 inline Result<const TraceInfo*> info_of(const tactus_trace* trace) noexcept {
   if (trace == nullptr) return refuse();

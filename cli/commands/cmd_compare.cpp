@@ -106,7 +106,7 @@ struct Side {
 /// against it each time.
 Outcome compare_all(Side& truth, Side& replica, const ContactDeclarations& contacts, const CompareOptions& options,
                     Report& report, std::optional<ErrorFigure>& figure) {
-  Progress progress("compare", truth.reader.frame_count(), options.common.progress());
+  ReadProgress progress("compare", &truth.reader, options.common.progress());
   Shown shown(truth.reader.info());
   TACTUS_CHECK(truth.advance());
   TACTUS_CHECK(replica.advance());

@@ -43,7 +43,7 @@ void begin_shapes(TraceFrame& frame) {
 Outcome copy(TraceReader& reader, TraceWriter& writer, const CutOptions& options, Report& report) {
   const std::uint32_t rate = reader.info().tick_rate;
   const std::int64_t from = tick_at(options.from, rate), to = tick_at(options.to, rate);
-  Progress progress("cut", reader.frame_count(), options.common.progress());
+  ReadProgress progress("cut", &reader, options.common.progress());
   TraceFrame frame;
   std::optional<std::int64_t> base;
   for (std::uint64_t read = 1;; ++read) {
@@ -181,7 +181,7 @@ void append(Part& part, TraceFrame& all) {
 
 /// The ticks that all traces have.
 Outcome merge(std::vector<Part>& parts, TraceWriter& writer, const MergeOptions& options, Report& report) {
-  Progress progress("merge", parts[0].reader.frame_count(), options.common.progress());
+  ReadProgress progress("merge", &parts[0].reader, options.common.progress());
   for (Part& part : parts) TACTUS_CHECK(part.advance());
   while (std::ranges::all_of(parts, &Part::more)) {
     const std::int64_t tick = std::ranges::max_element(parts, {}, [](const Part& p) { return p.frame.tick; })->frame.tick;
@@ -275,7 +275,7 @@ Outcome write_due(Resampler& resampler, TraceFrame& frame, TraceWriter& writer, 
 }
 
 Outcome resample(TraceReader& reader, Resampler& resampler, TraceWriter& writer, const ResampleOptions& options, Report& report) {
-  Progress progress("resample", reader.frame_count(), options.common.progress());
+  ReadProgress progress("resample", &reader, options.common.progress());
   TraceFrame in, out;
   for (std::uint64_t read = 0;; ++read) {
     TACTUS_TRY(const bool more, next_frame(reader, in, options.input));

@@ -135,7 +135,7 @@ const std::string& to_blame(const Error& error, const EncodeOptions& options) {
 
 Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, const ContactDeclarations& contacts,
                    const EncodeOptions& options, Report& report) {
-  Progress progress("encode", reader.frame_count(), options.common.progress());
+  ReadProgress progress("encode", &reader, options.common.progress());
   while (true) {
     contacts.apply(frame);
     if (const auto done = encode_frame(session, frame, report); !done) {

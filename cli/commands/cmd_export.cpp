@@ -34,7 +34,8 @@ Outcome run(const ExportOptions& options) {
   Report report{.command = "export csv", .files = {{"trace", options.input}, {"table", options.output}}};
   report.timings = {{"export"}};
   const auto rows = report.timings[0].times.measure([&] { return export_csv(*reader, *stream); });
-  if (!rows) return refuse(stream->fail() ? options.output : options.input, rows.error());
+  if (!rows && stream->fail()) return refuse(options.output, rows.error());
+  if (!rows) return refuse(options.input, reader->explain(rows.error()));
   TACTUS_CHECK(check_ending(options.input, *reader, rows->count()));
   TACTUS_CHECK(output.keep());
   report.describe(reader->info());
@@ -120,7 +121,7 @@ Outcome write_layout(const ExportFoxgloveOptions& options, const TraceInfo& info
 }
 
 Outcome write_all(MotionSource& source, FoxgloveWriter& writer, const ExportFoxgloveOptions& options, Report& report) {
-  Progress progress("export", source.frame_count(), options.common.progress());
+  ReadProgress progress("export", source.trace(), options.common.progress());
   TraceFrame frame;
   while (true) {
     TACTUS_TRY(const bool more, source.next(frame));

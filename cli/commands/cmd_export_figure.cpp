@@ -18,7 +18,7 @@ struct ExportFigureOptions {
 /// What the figure shows, and in the report how much there was to see.
 tl::expected<MotionFigure, Failure> read_all(MotionSource& source, const ExportFigureOptions& options, Report& report) {
   MotionFigure figure(source.info());
-  Progress progress("export", source.frame_count(), options.common.progress());
+  ReadProgress progress("export", source.trace(), options.common.progress());
   TraceFrame frame;
   while (true) {
     TACTUS_TRY(const bool more, source.next(frame));

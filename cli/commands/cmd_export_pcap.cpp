@@ -76,7 +76,7 @@ Result<void> play_frame(Playback& play, std::int64_t tick) {
 
 /// Ticks count from the first of the trace, and pauses of the recording take their time.
 Outcome play_all(Playback& play, const ExportPcapOptions& options, TickSpan& ticks) {
-  Progress progress("export", play.reader.frame_count(), options.common.progress());
+  ReadProgress progress("export", &play.reader, options.common.progress());
   const std::int64_t first = play.frame.tick;
   for (;;) {
     const std::int64_t tick = play.frame.tick;

@@ -80,12 +80,16 @@ Outcome apply_map(const std::string& text, CsvMapping& mapping) {
                                                               {"angular_velocity", subject.angular_velocity},
                                                               {"device", subject.device},
                                                               {"device_rotation", subject.device_rotation},
+                                                              {"device_euler", subject.device_euler},
+                                                              {"device_rotation_vector", subject.device_rotation_vector},
+                                                              {"device_rotation_matrix", subject.device_rotation_matrix},
                                                               {"force", subject.force}};
   const auto target = targets.find(quantity);
   if (equals == std::string::npos || target == targets.end()) {
-    return refuse_arguments("--map '" + text + "': not QUANTITY=COLUMNS",
-                            "Quantities are position, rotation (w,x,y,z), euler, rotation_vector, rotation_matrix, velocity, "
-                            "angular_velocity, device, device_rotation and force; with several objects NAME.position and so on.");
+    return refuse_arguments(
+        "--map '" + text + "': not QUANTITY=COLUMNS",
+        "Quantities are position, rotation (w,x,y,z), euler, rotation_vector, rotation_matrix, velocity, "
+        "angular_velocity, device, device_rotation (or device_euler and so on) and force; with several objects NAME.position.");
   }
   const auto columns = split(std::string_view(text).substr(equals + 1));
   if (columns.size() != target->second.size()) {
@@ -156,9 +160,11 @@ Outcome check_used(const ImportOptions& options, const CsvMapping& mapping) {
   std::vector<const CsvQuantities*> all{&mapping};
   for (const CsvSubject& other : mapping.others) all.push_back(&other);
   const auto any = [&](auto has) { return std::ranges::any_of(all, [&](const CsvQuantities* q) { return has(*q); }); };
-  const bool euler = any([](const CsvQuantities& q) { return !q.euler[0].empty(); });
+  const bool euler = any([](const CsvQuantities& q) { return !q.euler[0].empty() || !q.device_euler[0].empty(); });
   const bool angles =
-      euler || any([](const CsvQuantities& q) { return !q.rotation_vector[0].empty() || !q.angular_velocity[0].empty(); });
+      euler || any([](const CsvQuantities& q) {
+        return !q.rotation_vector[0].empty() || !q.device_rotation_vector[0].empty() || !q.angular_velocity[0].empty();
+      });
   const auto unused = [](const char* option, const char* why) {
     return refuse_arguments(std::string(option) + ": " + why, "Leave it out, or map what it is about.");
   };
@@ -295,9 +301,10 @@ Outcome run(const ImportOptions& options) {
 /// How lines and numbers of a table are meant.
 void add_text_options(Command& command, ImportOptions& options) {
   command
-      .add_option("--time-unit", options.time_unit,
-                  "Unit of the times [of the column's name, or s]; tick: they count ticks of --tick-rate")
-      ->one_of({"s", "ms", "us", "ns", "min", "h", "day", kTickUnit})
+      .add_option(
+          "--time-unit", options.time_unit,
+          "Unit of the times [of the column's name, or s]; tick: they count ticks of --tick-rate; hhmmss: 123559.5 is 12:35:59.5")
+      ->one_of({"s", "ms", "us", "ns", "min", "h", "day", kTickUnit, kClockUnit})
       ->type_name("UNIT");
   command.add_option("--angle-unit", options.angle_unit, "Unit of angles and of angular velocities [of the names]")
       ->one_of({"rad", "deg"})
@@ -353,7 +360,8 @@ void setup_import(Command& app, Action& action) {
       .add_option("--map", options->maps,
                   "Columns of one quantity: position, rotation (w,x,y,z), euler, rotation_vector, rotation_matrix, velocity, "
                   "angular_velocity, "
-                  "device, device_rotation or force, such as position=x,y,z, device=x,y,0 of a plane, cup.position=#2,#3,#4 of "
+                  "device, device_rotation (or device_euler, and so on) or force, such as position=x,y,z, device=x,y,0 of a "
+                  "plane, cup.position=#2,#3,#4 of "
                   "one of several "
                   "objects; may "
                   "be repeated")

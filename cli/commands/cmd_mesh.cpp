@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <string_view>
 
 #include <tactus/base/shown.h>
 #include <tactus/sim/tets/tet_files.h>
@@ -112,6 +114,11 @@ Outcome fill_surface(const MeshOptions& options, TetMeshReport& report) {
   auto filled = report.measure("fill", [&] { return fill(file->mesh, settings); });
   if (!filled) {
     Diagnostic error = filled.error();
+    const bool is_split = file->vertex.size() > std::set(file->vertex.begin(), file->vertex.end()).size();
+    if (is_split && error.error.rule == std::string_view("R-TGN-8"))
+      error.remedy =
+          "Parts of the surface touch at a point, and tetrahedra cannot: move them apart there, or give each part a file of its "
+          "own.";
     error.file = options.input;
     return refuse(error);
   }

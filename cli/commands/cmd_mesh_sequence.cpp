@@ -74,10 +74,12 @@ Outcome check_folder(const std::string& input) {
   std::string ending = std::filesystem::path(input).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr std::array<std::pair<const char*, const char*>, 5> kKnown{{{".fbx", "an FBX scene"},
+  constexpr std::array<std::pair<const char*, const char*>, 7> kKnown{{{".fbx", "an FBX scene"},
                                                                        {".abc", "an Alembic cache"},
                                                                        {".blend", "a Blender file"},
                                                                        {".usd", "a USD scene"},
+                                                                       {".usda", "a USD scene"},
+                                                                       {".usdc", "a USD scene"},
                                                                        {".usdz", "a USD scene"}}};
   const auto known = std::find_if(kKnown.begin(), kKnown.end(), [&](const auto& k) { return ending == k.first; });
   if (known == kKnown.end()) return {};

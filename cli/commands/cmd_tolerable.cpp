@@ -84,7 +84,7 @@ Figure share_figure(const TolerableOptions& options, const TraceInfo& info, cons
 
 tl::expected<DelayTolerance, Failure> of_trace(const TolerableOptions& options, TraceReader& reader) {
   DelayTolerance out(reader.info(), options.weber);
-  Progress progress("tolerable", reader.frame_count(), options.common.progress());
+  ReadProgress progress("tolerable", &reader, options.common.progress());
   TraceFrame frame;
   std::uint64_t read = 0;
   for (;; ++read) {

@@ -73,7 +73,7 @@ Outcome check_same_scene(const ViewOptions& options, const TraceInfo& truth, con
 /// Both side by side, up to the end of the trace.
 tl::expected<Json, Failure> truth_json(const ViewOptions& options, TraceReader& reader, Player& player, PacketTable& packets,
                                        Report& report) {
-  Progress progress("view", reader.frame_count(), options.common.progress());
+  ReadProgress progress("view", &reader, options.common.progress());
   std::optional<TruthData> data;
   TraceFrame frame;
   while (true) {

@@ -50,6 +50,28 @@ inline tl::expected<TraceReader, Failure> open_trace(const std::string& path, Vi
 /// Read the next frame, as TraceReader::next().   err  the same, with chunk, topic and time
 tl::expected<bool, Failure> next_frame(TraceReader& reader, TraceFrame& frame, const std::string& path);
 
+/// How far a trace has been read: by its frames where it tells their number, else by its bytes, where they are known.
+class ReadProgress {
+ public:
+  /// in  reader  null: a stream   pre  it outlives this and is not moved
+  ReadProgress(const char* label, const TraceReader* reader, Visibility visibility)
+      : reader_(reader != nullptr && !reader->frame_count() && reader->bytes().all ? reader : nullptr),
+        progress_(label,
+                  reader_ != nullptr  ? reader_->bytes().all
+                  : reader != nullptr ? reader->frame_count()
+                                      : std::nullopt,
+                  visibility) {}
+  void update(std::uint64_t frames) {
+    constexpr std::uint64_t kBetween = 64;  // frames: the place in a file is not asked for at each
+    if (reader_ == nullptr) progress_.update(frames);
+    else if (frames % kBetween == 0) progress_.update(reader_->bytes().read);
+  }
+
+ private:
+  const TraceReader* reader_;  // null: frames count
+  Progress progress_;
+};
+
 /// A stream ends inside a record: warns on standard error, quiet or not.
 void warn_cut_stream(const std::string& path, const Error& error);
 
@@ -83,7 +105,7 @@ class MotionSource {
 
   const TraceInfo& info() const noexcept { return trace_ ? trace_->info() : info_; }
   bool is_stream() const noexcept { return player_.has_value(); }
-  std::optional<std::uint64_t> frame_count() const noexcept { return trace_ ? trace_->frame_count() : std::nullopt; }
+  const TraceReader* trace() const noexcept { return trace_ ? &*trace_ : nullptr; }
   /// Read the next frame into that of the call before; false at the end, where a cut is warned of.   err  it is damaged
   tl::expected<bool, Failure> next(TraceFrame& frame);
   /// Those of a stream that came up to the last frame.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <tactus/base/rule.h>
+#include <tactus/trace/csv_pace.h>
 #include <tactus/trace/differences.h>
 #include <tactus/trace/missing.h>
 #include <tactus/trace/sample_track.h>
@@ -51,6 +52,8 @@ class ArrayWriter {
 
  private:
   Result<void> take_times();
+  Result<void> spread_groups();
+  CsvRow row_of(std::size_t row) const;
   Result<void> take_lanes();
   Result<void> add_lane(std::string where, std::span<const double> values, std::size_t width);
   void note_missing(const Lane& lane);
@@ -58,16 +61,18 @@ class ArrayWriter {
   Result<void> find_rate();
   Result<void> take_contacts();
   double off_grid(double rate) const;
-  double time_of(std::size_t row) const { return static_cast<double>(arrays_.time[rows_[row]] - start_) / kSecond; }
+  std::int64_t since_start(std::size_t row) const { return (even_.empty() ? arrays_.time[rows_[row]] : even_[row]) - start_; }
+  double time_of(std::size_t row) const { return static_cast<double>(since_start(row)) / kSecond; }
   bool is_pause(double time);
   RigidSample sample_of(const Lane& lane, std::size_t row) const;
-  const SampleTrack<std::int64_t>& lane_at(Lane& lane, std::int64_t time) const;
+  SampleTrack<std::int64_t>& lane_at(Lane& lane, std::int64_t time) const;
   void make(std::int64_t tick, TraceFrame& frame);
   TraceInfo info() const;
 
   const SampledArrays& arrays_;
   ReadNotes& notes_;
-  std::vector<std::size_t> rows_;  // of the arrays, whose times rise
+  std::vector<std::size_t> rows_;   // of the arrays, whose times rise
+  std::vector<std::int64_t> even_;  // [ns] of rows_, whose own times come in groups; empty: those hold
   std::int64_t start_ = 0;
   std::uint32_t rate_ = 0;
   bool is_on_grid_ = false;
@@ -83,16 +88,62 @@ Result<void> ArrayWriter::take_times() {
     const std::string place = "row " + std::to_string(row);
     if (time == SampledArrays::kNoTime) {
       notes_.add("time", "missing; the row is left out", place);
-    } else if (last && time <= *last) {
-      notes_.add("time", "does not increase; the row is left out", place);
+    } else if (last && time < *last) {
+      notes_.add("time", "falls; the row is left out", place);
     } else {
       rows_.push_back(row);
       last = time;
     }
   }
   if (rows_.empty() || 2 * rows_.size() < arrays_.time.size()) return fail(Errc::invalid, "R-CSV-5");
-  start_ = arrays_.time[rows_.front()];
+  TACTUS_CHECK(spread_groups());
+  start_ = even_.empty() ? arrays_.time[rows_.front()] : even_.front();
   if (static_cast<double>(*last) - static_cast<double>(start_) > 2147483648.0 * kSecond) return fail(Errc::invalid, "R-CSV-5");
+  return {};
+}
+
+/// As one of a table: the first quantity that is there tells whether rows with one time are samples.
+CsvRow ArrayWriter::row_of(std::size_t row) const {
+  CsvRow out{.line = row, .time = arrays_.time[row], .bytes = 0, .segment = {}, .values = {CsvValue{}}};
+  std::span<const double> values;
+  if (!arrays_.objects.empty()) values = arrays_.objects.front().position;
+  else if (!arrays_.users.empty())
+    values = arrays_.users.front().device.empty() ? arrays_.users.front().force : arrays_.users.front().device;
+  if (values.size() < 3 * row + 3) return out;
+  const double* v = &values[3 * row];
+  out.values[0].is_there = std::isfinite(v[0] + v[1] + v[2]);
+  if (out.values[0].is_there) out.values[0].sample.pose.position = {v[0], v[1], v[2]};
+  return out;
+}
+
+/// Times that repeat: rows in groups get even times; where they are copies, the last row of each time counts.
+Result<void> ArrayWriter::spread_groups() {
+  constexpr std::size_t kRowsForPace = 10'000;
+  const auto repeats = [this](std::size_t i) { return arrays_.time[rows_[i]] == arrays_.time[rows_[i - 1]]; };
+  std::size_t first = 1;
+  while (first < rows_.size() && !repeats(first)) ++first;
+  if (first >= rows_.size()) return {};
+  const std::size_t from = first > kRowsForPace / 2 ? first - kRowsForPace / 2 : 0;
+  std::vector<CsvRow> some;
+  for (std::size_t i = from; i < std::min(rows_.size(), from + kRowsForPace); ++i) some.push_back(row_of(rows_[i]));
+  CsvMapping mapping;
+  mapping.tick_rate = arrays_.tick_rate;
+  CsvNamedPlan plan;
+  plan.time_is_told = true;
+  const auto pace = find_pace(some, mapping, plan);
+  if (pace && pace->period > 0) {
+    EvenTimes even(*pace);
+    for (const std::size_t row : rows_) even_.push_back(even.time_of(row_of(row), 0));
+    for (const ReadNote& note : plan.notes.all()) notes_.add("time", note.what);
+    return {};
+  }
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (i + 1 < rows_.size() && repeats(i + 1))
+      notes_.add("time", "repeats; of equal times the last row counts", "row " + std::to_string(rows_[i]));
+    else kept.push_back(rows_[i]);
+  }
+  rows_ = std::move(kept);
   return {};
 }
 
@@ -111,7 +162,8 @@ Result<void> ArrayWriter::add_lane(std::string where, std::span<const double> va
   }
   note_missing(lane);
   if (width == 4) note_mended(lane);
-  lane.track = SampleTrack<std::int64_t>({.gap = arrays_.gap * kSecond, .same = kOnGrid * kSecond / rate_});
+  lane.track =
+      SampleTrack<std::int64_t>({.gap = arrays_.gap * kSecond, .same = kOnGrid * kSecond / rate_, .tick = kSecond / rate_});
   lanes_.push_back(std::move(lane));
   return {};
 }
@@ -165,6 +217,7 @@ Result<void> ArrayWriter::take_lanes() {
       return fail(Errc::invalid_argument, "R-CSV-8");
     }
     TACTUS_CHECK(add(user.name, "device", user.device, 3));
+    TACTUS_CHECK(add(user.name, "rotation", user.rotation, 4));
     TACTUS_CHECK(add(user.name, "force", user.force, 3));
   }
   return {};
@@ -232,10 +285,10 @@ RigidSample ArrayWriter::sample_of(const Lane& lane, std::size_t row) const {
 }
 
 /// in  time  [ns] since the start, rising
-const SampleTrack<std::int64_t>& ArrayWriter::lane_at(Lane& lane, std::int64_t time) const {
+SampleTrack<std::int64_t>& ArrayWriter::lane_at(Lane& lane, std::int64_t time) const {
   for (; lane.taken < lane.rows.size(); ++lane.taken) {
     const std::size_t row = lane.rows[lane.taken];
-    const std::int64_t at = arrays_.time[rows_[row]] - start_;
+    const std::int64_t at = since_start(row);
     if (lane.taken > 0 && lane.track.is_settled(time, at)) break;
     lane.track.add({at, sample_of(lane, row)});
   }
@@ -246,19 +299,20 @@ const SampleTrack<std::int64_t>& ArrayWriter::lane_at(Lane& lane, std::int64_t t
 void ArrayWriter::make(std::int64_t tick, TraceFrame& frame) {
   const auto time = static_cast<std::int64_t>(time_of_tick(tick, rate_));
   std::size_t lane = 0;
-  const auto next = [&]() -> const SampleTrack<std::int64_t>& { return lane_at(lanes_[lane++], time); };
+  const auto next = [&]() -> SampleTrack<std::int64_t>& { return lane_at(lanes_[lane++], time); };
   const auto speed_of = [](const auto& track) { return track.is_known() ? track.value().pose.position : Vec3{}; };
   for (std::size_t i = 0; i < arrays_.objects.size(); ++i) {
     const SampledObject& of = arrays_.objects[i];
     RigidSample& out = frame.objects[i];
-    out.pose.position = next().value().pose.position;
-    if (!of.rotation.empty()) out.pose.rotation = next().value().pose.rotation;
+    out.pose.position = next().pose().position;
+    if (!of.rotation.empty()) out.pose.rotation = next().pose().rotation;
     if (!of.velocity.empty()) out.velocity = speed_of(next());
     if (!of.angular_velocity.empty()) out.angular_velocity = speed_of(next());
   }
   for (std::size_t i = 0; i < arrays_.users.size(); ++i) {
     UserSample& out = frame.users[i];
-    if (!arrays_.users[i].device.empty()) out.device.position = next().value().pose.position;
+    if (!arrays_.users[i].device.empty()) out.device.position = next().pose().position;
+    if (!arrays_.users[i].rotation.empty()) out.device.orientation = next().pose().rotation;
     if (!arrays_.users[i].force.empty()) out.force = out.server_force = next().vector();
     out.contact = {};
     out.contact.device = out.device.position;
@@ -274,7 +328,8 @@ TraceInfo ArrayWriter::info() const {
     const bool can_turn = !object.rotation.empty() || !object.angular_velocity.empty();
     out.objects.push_back({object.name, can_turn ? Dof::all : Dof::translation});
   }
-  for (const SampledUser& user : arrays_.users) out.users.push_back({.name = user.name});
+  for (const SampledUser& user : arrays_.users)
+    out.users.push_back({.name = user.name, .senses = {.orientation = !user.rotation.empty()}});
   return out;
 }
 

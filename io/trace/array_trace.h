@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A trace from arrays: samples of objects and users at the same times, evenly spaced or not.
 ///
-/// Ticks lie on a grid of the tick rate. Rows that lie on it are taken as they are; between others positions and forces follow a straight
-/// line and rotations an arc. A sample with a value that is not finite, or a rotation whose length is off 1 by more than 2 %, is missing: it
+/// Ticks lie on a grid of the tick rate. Rows that lie on it are taken as they are; between others poses follow a parabola where the motion
+/// bends alike at both rows, else a straight line and an arc; forces and velocities follow lines (sample_track.h). A sample with a value that is not finite, or a rotation whose length is off 1 by more than 2 %, is missing: it
 /// is interpolated where its neighbours are at most `gap` apart, else the last one is held, a force no longer than `gap` and a velocity not
-/// at all: then they are 0. No ticks are made between rows that are farther apart than that.
+/// at all: then they are 0. No ticks are made between rows that are farther apart than that. Rows that share a time or come in groups, as of
+/// a clock that is coarser than the samples, are spread evenly, as those of a table are (csv_pace.h).
 #pragma once
 
 #include <cstdint>
@@ -30,14 +31,15 @@ struct SampledObject {
 
 struct SampledUser {
   std::string name;
-  std::span<const double> device{};  ///< T x 3 [m] world
-  std::span<const double> force{};   ///< T x 3 [N] on the user, world
+  std::span<const double> device{};    ///< T x 3 [m] world
+  std::span<const double> rotation{};  ///< T x 4 of the device, w x y z; empty: it does not tell
+  std::span<const double> force{};     ///< T x 3 [N] on the user, world
 };
 
 struct SampledArrays {
   static constexpr std::int64_t kNoTime = INT64_MIN;
 
-  std::span<const std::int64_t> time{};  ///< [ns], rising; kNoTime: missing
+  std::span<const std::int64_t> time{};  ///< [ns], not falling; kNoTime: missing
   std::vector<SampledObject> objects{};
   std::vector<SampledUser> users{};
   std::vector<DeclaredContact> contacts{};  ///< what users touched: is written into the trace

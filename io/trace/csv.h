@@ -50,7 +50,8 @@ enum class AngularVelocityFrame : std::uint8_t { world, body };
 
 inline constexpr const char* kZeroColumn = "0";  ///< in a vector: a component that the table lacks and that is 0
 
-inline constexpr const char* kTickUnit = "tick";  ///< as time_unit: the column counts ticks of tick_rate
+inline constexpr const char* kTickUnit = "tick";     ///< as time_unit: the column counts ticks of tick_rate
+inline constexpr const char* kClockUnit = "hhmmss";  ///< as time_unit: 123559.5 is 12:35:59.5, as of NMEA
 
 enum class CsvNames : std::uint8_t {
   automatic,  ///< csv_header.h
@@ -74,7 +75,7 @@ enum class QuaternionOrder : std::uint8_t {
 enum class CsvDateOrder : std::uint8_t { by_digits, mdy, dmy };  ///< of dates such as 05/06/2024
 
 /// Which column feeds which quantity of an object or a user; an empty name means "not there". A column may also be named by its number,
-/// "#3", without its unit, or by the end of its name where that is unique. At most one kind of rotation.
+/// "#3", without its unit, or by the end of its name where that is unique. At most one kind of rotation of each.
 struct CsvQuantities {
   std::array<std::string, 3> position;  ///< [m]; empty: no object, a user alone
   std::array<std::string, 4> rotation;  ///< w, x, y, z or as CsvMapping::quaternion_order says; empty: no rotation
@@ -85,8 +86,10 @@ struct CsvQuantities {
   std::array<std::string, 3> velocity;          ///< [m/s]; empty: backward differences, 0 where a segment begins
   std::array<std::string, 3> angular_velocity;  ///< [rad/s]; empty: likewise
   std::array<std::string, 3> device;            ///< [m] probe of the user
-  std::array<std::string, 4> device_rotation;   ///< of the probe, as rotation; needs device
-  std::array<std::string, 3> force;             ///< [N] on the user; one recorded force serves for client and server
+  std::array<std::string, 4> device_rotation;   ///< of the probe, as rotation, or as the three others; needs device
+  std::array<std::string, 3> device_euler, device_rotation_vector;
+  std::array<std::string, 9> device_rotation_matrix;
+  std::array<std::string, 3> force;  ///< [N] on the user; one recorded force serves for client and server
 };
 
 /// Another object, user, or both, of a table that has several.
@@ -109,7 +112,7 @@ struct CsvMapping : CsvQuantities {
   double length_scale = 1.0;  ///< metres per unit of the file's lengths
   bool says_length = false;   ///< length_scale was given, and must not contradict the names
   std::string time_unit{}, angle_unit{},
-      force_unit{};  ///< "ms" (or kTickUnit), "deg", "mN"; empty: as the names say, else s, rad and N
+      force_unit{};  ///< "ms" (or kTickUnit, kClockUnit), "deg", "mN"; empty: as the names say, else s, rad and N
   QuaternionOrder quaternion_order = QuaternionOrder::by_names;
   std::string euler_order{};                 ///< "ZYX": about z, then the turned y, then the turned x; "xyz": about fixed axes
   std::array<std::int8_t, 3> axes{1, 2, 3};  ///< what the trace's x, y and z are in the file: {1, -3, 2} is x, -z, y

@@ -45,7 +45,8 @@ bool may_be_thousands(std::string_view field) noexcept {
 }
 
 std::size_t end_of_field(std::string_view line, char separator) noexcept {
-  return std::min(separator == kBlanks ? line.find_first_of(" \t") : line.find(separator), line.size());
+  return std::min(separator == kBlanks ? line.find_first_of(" \t") : line.find(separator == kEdgedBars ? '|' : separator),
+                  line.size());
 }
 
 bool equals_any_case(std::string_view a, std::string_view b) noexcept {
@@ -68,7 +69,12 @@ std::string_view trim_field(std::string_view text) noexcept {
 }
 
 PointedFields split_fields(std::string_view line, char separator, std::vector<std::string>& fields) {
-  if (separator == kBlanks) line = trim_field(line);
+  if (separator == kBlanks || separator == kEdgedBars) line = trim_field(line);
+  if (separator == kEdgedBars) {
+    const bool has_edges = line.size() > 2 && line.starts_with('|') && line.ends_with('|');
+    if (has_edges) line = line.substr(1, line.size() - 2);
+    else separator = '\0';  // it is no line of such a table
+  }
   const std::string_view blank = separator == '\t' ? std::string_view(" ") : kBlankBytes;  // an empty field is one, too
   std::size_t count = 0;
   PointedFields pointed;

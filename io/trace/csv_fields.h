@@ -9,8 +9,9 @@
 
 namespace tactus {
 
-inline constexpr char kBlanks = ' ';                          ///< as a separator: any number of blanks and tabs
-inline constexpr std::string_view kCsvSeparators = ",;\t |";  ///< the likelier one first
+inline constexpr char kBlanks = ' ';        ///< as a separator: any number of blanks and tabs
+inline constexpr char kEdgedBars = '\x1D';  ///< as a separator: bars, and one at each end of the line, as in Markdown
+inline constexpr std::string_view kCsvSeparators = ",;\t \x1D|";  ///< the likelier one first
 
 /// Numbers in quotes whose comma was taken for the decimal point.
 struct PointedFields {

@@ -109,11 +109,9 @@ CsvResult<CsvImport> run(CsvReader& reader, const CsvMapping& mapping, CsvNamedP
                    .line = reader.line(),
                    .detail = "numbers in quotes, such as \"1,000\", may be thousands or decimals",
                    .remedy = "Save the table without separators of thousands, or with semicolons between fields."});
-  if (commas.count > 0)
-    plan.notes.add("", std::to_string(commas.count) + " numbers in quotes have a comma, which is taken for the decimal point");
-  if (reader.repeated_names() > 0)
-    plan.notes.add("", "lines of names come again and are left out: " + std::to_string(reader.repeated_names()),
-                   "line " + std::to_string(reader.first_repeated()));
+  plan.notes.add("", "a number in quotes has a comma, which is taken for the decimal point", {}, commas.count);
+  plan.notes.add("", "a line of names comes again and is left out", "line " + std::to_string(reader.first_repeated()),
+                 reader.repeated_names());
   note_unread(plan);
   auto done = timeline.finish();
   if (!done && done.error().line == 0)

@@ -99,6 +99,23 @@ std::size_t NamedPlanner::column(const std::string& name) {
     plan_.used[found[0]] = true;
     return found[0];
   }
+  std::vector<std::string> words;  // of a line of "t:0 x:1", whatever stands between
+  for (const std::string& n : plan_.names) {
+    std::vector<std::string> own;
+    split_fields(n, kBlanks, own);
+    words.insert(words.end(), own.begin(), own.end());
+  }
+  const auto is_pair = [](const std::string& n) {
+    const std::size_t mark = n.find_first_of(":=");
+    return mark != std::string::npos && mark > 0 && std::isalpha(static_cast<unsigned char>(n[0])) != 0 &&
+           is_value(n.substr(mark + 1));
+  };
+  if (found.empty() && std::ranges::all_of(words, is_pair)) {
+    mistake(Errc::malformed, "R-CSV-2", name,
+            "Fields are pairs of name and value: `sed -E 's/[A-Za-z_][A-Za-z_0-9]*[:=]//g' FILE >TABLE` leaves the values, whose "
+            "columns are '#1', '#2', ...");
+    return 0;
+  }
   std::string remedy =
       found.empty() ? "The table has the columns "
                     : "Several columns are called so: name one by its number, such as #" + std::to_string(found[0] + 1) + ", of ";
@@ -194,6 +211,8 @@ void NamedPlanner::plan_time() {
     plan_.time_unit = std::llround(1e9 / mapping_.tick_rate);
     return;
   }
+  plan_.time_is_clock = mapping_.time_unit == kClockUnit;
+  if (plan_.time_is_clock) return;
   plan_.time_unit = std::llround(1e9 * scale_of(*plan_.time, CsvDimension::time));
   if (columns.size() == 2) plan_second_time(columns[1]);
   else guess_fraction();
@@ -347,15 +366,21 @@ void NamedPlanner::plan_subject(const CsvQuantities& q, const std::string& objec
   }
   if (has_angular_velocity && !has_rotation && mapping_.angular_velocity_frame == AngularVelocityFrame::body)
     mistake(Errc::invalid_argument, "R-CSV-8", "rotation");
-  const bool has_device = has_group(q.device), has_force = has_group(q.force), has_hold = has_group(q.device_rotation);
+  const bool has_device = has_group(q.device), has_force = has_group(q.force);
+  CsvQuantities turn;  // of the device, by the same door
+  turn.rotation = q.device_rotation, turn.euler = q.device_euler;
+  turn.rotation_vector = q.device_rotation_vector, turn.rotation_matrix = q.device_rotation_matrix;
+  CsvChannel device{.kind = CsvChannel::Kind::device};
+  plan_rotation(turn, device);
+  const bool has_hold = device.turn != CsvChannel::Turn::none;
   if (has_hold && !has_device)
-    mistake(Errc::invalid_argument, "R-CSV-8", q.device_rotation[0], "Map the position of the device, too.");
+    mistake(Errc::invalid_argument, "R-CSV-8", "device_rotation", "Map the position of the device, too.");
   if (!has_device && !has_force) return;
   const auto index = static_cast<std::uint32_t>(plan_.info.users.size());
   plan_.info.users.push_back({user});
   if (has_device) {
-    CsvChannel device{.kind = CsvChannel::Kind::device, .index = index, .position = vector_of(q.device, CsvDimension::length)};
-    if (has_hold) device.turn = CsvChannel::Turn::quaternion, plan_quaternion(q.device_rotation, device);
+    device.index = index;
+    device.position = vector_of(q.device, CsvDimension::length);
     plan_.info.users.back().senses.orientation = has_hold;
     plan_.channels.push_back(device);
   }

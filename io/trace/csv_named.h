@@ -49,6 +49,7 @@ struct CsvNamedPlan {
   std::int64_t fraction_unit = 1;
   std::int64_t time_unit = 1'000'000'000;  ///< [ns]
   bool time_is_told = false;               ///< by option or name
+  bool time_is_clock = false;              ///< kClockUnit
   std::vector<bool> used;                  ///< per column
   ReadNotes notes;
 };

@@ -191,8 +191,7 @@ CsvResult<void> PaceFinder::take_groups() {
   const std::string what = "several rows share a time or come in groups, of " + number_text(pace_.size, "%.4g") + " rows each " +
                            number_text(pace_.apart / 1e9, "%.3g") + " s";
   if (mapping_.strict) return refuse(Errc::invalid, "R-CSV-5", what, "Do not give --strict: they are then spread evenly.");
-  plan_.notes.add("", what + ": spread evenly, " + number_text(1e9 / pace_.period, "%.6g") +
-                          " rows per second (--no-resample refuses such tables)");
+  plan_.notes.add("", what + ": spread evenly, " + number_text(1e9 / pace_.period, "%.6g") + " rows per second");
   return {};
 }
 

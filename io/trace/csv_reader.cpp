@@ -19,7 +19,15 @@ constexpr std::array<std::uint8_t, 4> kZstdMagic{0x28, 0xB5, 0x2F, 0xFD};  // RF
 /// A byte order mark begins a line where files are put together.
 std::string_view without_mark(std::string_view line) noexcept { return line.starts_with("\xEF\xBB\xBF") ? line.substr(3) : line; }
 
-bool is_comment(std::string_view text) noexcept { return text[0] == '#' || text[0] == '%' || text.starts_with("//"); }
+/// "|---|:--:|" below the names of a table in Markdown, "-----+----" of a database
+bool is_rule_line(std::string_view text) noexcept {
+  return text.find_first_not_of("|-+=: \t") == std::string_view::npos && text.find_first_of("|+") != std::string_view::npos &&
+         (text.find("--") != std::string_view::npos || text.find("==") != std::string_view::npos);
+}
+
+bool is_comment(std::string_view text) noexcept {
+  return text[0] == '#' || text[0] == '%' || text.starts_with("//") || is_rule_line(text);
+}
 
 }  // namespace
 

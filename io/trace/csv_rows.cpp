@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
@@ -203,6 +204,28 @@ bool CsvRows::add_fraction(const std::vector<std::string>& fields, CsvTime& time
   return fits;
 }
 
+namespace {
+
+/// [ns] 12:35:59.5 of 123559.5 s
+std::optional<std::int64_t> clock_of(std::int64_t time) noexcept {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const std::int64_t digits = time / kSecond, hours = digits / 10000, minutes = digits / 100 % 100, seconds = digits % 100;
+  if (time < 0 || hours > 23 || minutes > 59 || seconds > 60) return std::nullopt;
+  return (hours * 3600 + minutes * 60 + seconds) * kSecond + time % kSecond;
+}
+
+}  // namespace
+
+/// Numbers that no one called seconds, none of which ends in 61 to 99, and which step over these: 123559.9, 123600.0.
+bool CsvRows::looks_like_clock(std::int64_t time) {
+  constexpr std::int64_t kMost = 5'000'000'000;  // [ns] from row to row
+  const auto clock = clock_of(time);
+  may_be_clock_ = may_be_clock_ && clock.has_value() && !plan_.time_is_told && plan_.time_unit == 1'000'000'000;
+  if (!may_be_clock_) return false;
+  const std::int64_t since = *clock - std::exchange(last_clock_, *clock);
+  return has_time_ && since > 0 && since < kMost && time - last_time_ > since;
+}
+
 bool CsvRows::read_time(const std::vector<std::string>& fields, CsvRow& row) {
   column_ = *plan_.time;
   text_ = fields[column_];
@@ -212,7 +235,20 @@ bool CsvRows::read_time(const std::vector<std::string>& fields, CsvRow& row) {
   auto time = parse_csv_time(text_, plan_.time_unit, order);
   if (!time && order == DateOrder::by_digits && parse_csv_time(text_, plan_.time_unit, DateOrder::mdy))
     remedy_ = "Say which number is the month: --date-order mdy or dmy.";
+  if (time && time->kind == CsvTimeKind::number && plan_.time_is_clock) {
+    const auto clock = clock_of(time->nanoseconds);
+    if (!clock) remedy_ = "It is no time of day as 123559.5 is: give another --time-unit.";
+    time = clock ? std::optional(CsvTime{*clock, CsvTimeKind::clock}) : std::nullopt;
+  }
   if (!time || (has_time_ && time->kind != kind_)) return false;
+  if (time->kind == CsvTimeKind::number && !plan_.fraction && looks_like_clock(time->nanoseconds)) {
+    remedy_ =
+        "Times seem to be hours, minutes and seconds, as 123559 and 123600 are one second apart: say --time-unit hhmmss if they "
+        "are, "
+        "--time-unit s if they are seconds.";
+    asks_ = true;
+    return false;
+  }
   if (plan_.clock && time->kind != CsvTimeKind::date) return false;
   if (plan_.fraction && time->kind == CsvTimeKind::number && !add_fraction(fields, *time)) return false;
   const std::int64_t turn = std::ranges::count(text_, ':') == 1 ? kDayUnit / 24 : kDayUnit;  // of minutes: past the hour
@@ -284,7 +320,7 @@ CsvResult<std::optional<CsvRow>> CsvRows::parse(const CsvReader& reader) {
   text_.clear();
   remedy_.clear();
   const auto refuse_row = [&](RuleName rule, std::string_view what) -> CsvResult<std::optional<CsvRow>> {
-    if (!mapping_.skip_bad)
+    if (!mapping_.skip_bad || asks_)
       return tl::unexpected(wrong(
           rule,
           !remedy_.empty() ? remedy_

@@ -47,6 +47,7 @@ class CsvRows {
   Read read_sample(const std::vector<std::string>& fields, const CsvChannel& channel, RigidSample& sample);
   Read read_rotation(const std::vector<std::string>& fields, const CsvChannel& channel, Quat& rotation);
   bool read_time(const std::vector<std::string>& fields, CsvRow& row);
+  bool looks_like_clock(std::int64_t time);
   bool add_fraction(const std::vector<std::string>& fields, CsvTime& time);
   CsvResult<void> settle_order(const std::vector<std::string>& fields, CsvChannel& channel);
   void settle_unit(const std::string& field);
@@ -66,7 +67,9 @@ class CsvRows {
   std::size_t column_ = 0;  // that was read last
   std::string text_, why_;  // why a value is missing
   std::string remedy_;      // of a time that cannot be read
-  bool has_time_ = false;
+  bool has_time_ = false, may_be_clock_ = true;
+  bool asks_ = false;  // what the rows mean: not one bad row
+  std::int64_t last_clock_ = 0;
   CsvTimeKind kind_ = CsvTimeKind::number;
   std::int64_t last_time_ = 0, wrapped_ = 0, first_date_ = 0;
 };

@@ -111,14 +111,11 @@ CsvResult<CsvImport> CsvTimeline::finish() {
         "If that is right, say --tick-rate " + std::to_string(plan_.info.tick_rate) + "; else give the rate, or --time-unit."));
   if (const auto finished = writer_->finish(); !finished) return tl::unexpected(Diagnostic{finished.error()});
   const double period = 1.0 / plan_.info.tick_rate;
-  const auto tell = [&](std::uint64_t count, const std::string& what, const std::string& detail) {
-    if (count > 0) plan_.notes.add("", what + ": " + std::to_string(count) + detail);
-  };
   const std::string gap = number_text(gap_ * period) + " s (--gap)";
-  tell(made_, "samples interpolated", ", over at most " + number_text(largest_gap_ * period) + " s");
-  tell(left_out_, "ticks left out", ": nothing was recorded for more than " + gap);
-  tell(rested_, "samples held", ", as others of the table go on: none for more than " + gap);
-  tell(repeated_, "rows with the time, or the tick, of a row before", "; the last of each counts");
+  plan_.notes.add("", "a sample is interpolated, over at most " + number_text(largest_gap_ * period) + " s", {}, made_);
+  plan_.notes.add("", "a tick is left out: nothing was recorded for more than " + gap, {}, left_out_);
+  plan_.notes.add("", "a sample is held, as others of the table go on: none for more than " + gap, {}, rested_);
+  plan_.notes.add("", "a row with the time, or the tick, of a row before; the last of each counts", {}, repeated_);
   done_.notes = std::move(plan_.notes);
   return done_;
 }
@@ -265,10 +262,8 @@ CsvResult<void> CsvTimeline::ask_for_ticks(const CsvRow& row, const Instant& at)
 bool CsvTimeline::is_ready(std::int64_t tick) const {
   const Instant at{tick, 0};
   if (now_.since(at) < kSame) return false;
-  if (now_.since(at) > gap_) return true;
   return std::ranges::all_of(channels_, [&](const SampleTrack<Instant>& track) {
-    const auto* newest = track.newest();
-    return newest != nullptr && (newest->at.since(at) > -kSame || now_.since(newest->at) > gap_);
+    return track.is_empty() ? now_.since(at) > gap_ : track.is_settled(at, now_);
   });
 }
 
@@ -287,6 +282,7 @@ bool CsvTimeline::sample_at(std::size_t channel, std::int64_t tick, RigidSample&
   track.move_to({tick, 0});
   if (track.is_empty()) return false;
   out = track.value();
+  out.pose = track.pose();
   using Place = SampleTrack<Instant>::Place;
   if (track.place() == Place::on) return true;
   if (track.place() == Place::between) largest_gap_ = std::max(largest_gap_, track.span());

@@ -20,4 +20,10 @@ inline Twist motion_between(const Pose& from, const Pose& to, double seconds) no
   return {(1.0 / seconds) * (to.position - from.position), (angle_per_sine / seconds) * axis};
 }
 
+/// The turn by |turn| [rad] about its direction.
+inline Quat rotation_of(const Vec3& turn) noexcept {
+  const double angle = norm(turn), sine_per_angle = angle > 1e-9 ? std::sin(angle / 2) / angle : 0.5;
+  return {std::cos(angle / 2), sine_per_angle * turn.x, sine_per_angle * turn.y, sine_per_angle * turn.z};
+}
+
 }  // namespace tactus

@@ -24,8 +24,8 @@ class FrameAssembler {
   virtual std::optional<std::uint16_t> frame_channel() const noexcept = 0;
   /// What was decided so far; none: nothing ever is.
   virtual const ReadNotes* notes() const noexcept { return nullptr; }
-  /// Of the last error, beyond its rule; may be empty.
-  virtual std::string detail() const { return {}; }
+  /// Words of the last error; null: its place in the file tells all.
+  virtual const Diagnostic* refused() const noexcept { return nullptr; }
 };
 
 /// What a file tells ahead of its first message.

@@ -86,7 +86,7 @@ tl::expected<Reader, Diagnostic> Reader::open(ByteSource source, const ReadLimit
 tl::expected<Reader, Diagnostic> Reader::open(RecordingFiles files, OnDamage on_damage, const ReadLimits& limits) {
   TACTUS_TRY(ByteSource source, diagnosed(files.open(0)));
   Reader reader(std::move(source), limits);
-  for (const ReadNote& note : files.notes) reader.notes_.add(note.where, note.what, note.first);
+  for (const ReadNote& note : files.notes) reader.notes_.add(note);
   reader.files_ = std::move(files);
   reader.on_damage_ = on_damage;
   TACTUS_CHECK(reader.start_file());

@@ -44,18 +44,21 @@ class ReadWatcher {
   virtual void on_read(std::uint64_t bytes, std::uint64_t all) = 0;
 };
 
-/// Notes of one recording, each place and sentence once.
+/// Notes of one recording, each place and sentence once, with how often. What: in the singular; the count stands behind.
 class ReadNotes {
  public:
   /// time O(notes): few; memory bounded by kMost notes, what comes after is counted in the last
-  void add(std::string_view where, std::string_view what, std::string first = {}) {
+  /// in  count  0: nothing is noted
+  void add(std::string_view where, std::string_view what, std::string first = {}, std::uint64_t count = 1) {
+    if (count == 0) return;
     const auto same = [&](const ReadNote& note) { return note.where == where && note.what == what; };
     const auto found = std::find_if(notes_.begin(), notes_.end(), same);
-    if (found != notes_.end()) ++found->count;
-    else if (notes_.size() < kMost) notes_.push_back({std::string(where), std::string(what), std::move(first)});
+    if (found != notes_.end()) found->count += count;
+    else if (notes_.size() < kMost) notes_.push_back({std::string(where), std::string(what), std::move(first), count});
     else if (notes_.size() == kMost) notes_.push_back({"", "more notes than are kept", std::move(first)});
     else ++notes_.back().count;
   }
+  void add(const ReadNote& note) { add(note.where, note.what, note.first, note.count); }
   const std::vector<ReadNote>& all() const noexcept { return notes_; }
 
  private:

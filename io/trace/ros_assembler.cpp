@@ -74,7 +74,7 @@ class RosAssembler final : public FrameAssembler {
   const TraceInfo& info() const noexcept override { return info_; }
   std::optional<std::uint16_t> frame_channel() const noexcept override { return std::nullopt; }
   const ReadNotes* notes() const noexcept override { return &notes_; }
-  std::string detail() const override { return detail_; }
+  const Diagnostic* refused() const noexcept override { return refused_ ? &*refused_ : nullptr; }
 
  private:
   struct Object {
@@ -101,7 +101,7 @@ class RosAssembler final : public FrameAssembler {
   ReadOptions options_;
   TraceInfo info_;
   ReadNotes notes_;
-  std::string detail_;  // of the last error
+  std::optional<Diagnostic> refused_;
   RosSamples samples_;
   RosSurvey survey_;
   std::deque<RosSample> kept_;  // of a pipe's look-ahead
@@ -292,7 +292,9 @@ Result<bool> RosAssembler::take(mcap::Reader& mcap) {
     }
     sample->time = *time;
     if (!survey_.moves(sample->source)) sample->time = std::max(sample->time, released_);
-    else newest_ = std::max(newest_, static_cast<std::uint64_t>(static_cast<std::int64_t>(sample->log) + added));
+    else
+      newest_ = std::max(newest_, std::min(static_cast<std::uint64_t>(static_cast<std::int64_t>(sample->log) + added),
+                                           sample->time + window_ / 2));
     order_.add(*sample);
     if (survey_.moves(sample->source) && newest_ > window_) order_.reach(newest_ - window_);
   }
@@ -336,8 +338,13 @@ Result<bool> RosAssembler::skip(mcap::Reader& mcap, std::uint64_t time) {
     if (next) {
       const std::uint64_t since = *next - survey_.start();
       if (since / 1'000'000'000 >= static_cast<std::uint64_t>(kMaxSeconds) - 1) {
-        detail_ = survey_.place_of(source) + ", at " + std::to_string(since / 1'000'000'000) + " s: more than a trace can hold";
-        return fail(Errc::invalid, "R-TRC-15", 8 * mcap.offset());
+        const Error error = fail(Errc::invalid, "R-TRC-15", 8 * mcap.offset()).value();
+        refused_ = {.error = error,
+                    .detail = survey_.place_of(source) + ", at " + std::to_string(since / 1'000'000'000) + " s",
+                    .cause = "times go on to more than the 2^31 s that a trace holds",
+                    .remedy = "Convert it with `tactus import ros`: --stamps header takes the times of the headers, --skip " +
+                              samples_.sources()[source].topic + " leaves the topic out."};
+        return tl::unexpected(error);
       }
       tick_ = std::max(tick_ + 1, tick_of_time(since, info_.tick_rate));
       return true;

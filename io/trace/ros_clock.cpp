@@ -11,9 +11,12 @@ namespace tactus {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kStep = 10'000'000;           // [ns] what one channel falls back by is a step of the clock, not a crossing
-constexpr std::int64_t kOtherClock = kSecond;        // stamps that are so far off are of another clock
-constexpr std::int64_t kMostLagRange = 5 * kSecond;  // of usable stamps
+constexpr std::int64_t kStep = 10'000'000;  // [ns] what one channel falls back by is a step of the clock, not a crossing
+constexpr std::int64_t kLeap =
+    30'000'000 * kSecond;  // nobody records nothing for a year: the clock was set, as of a computer that began in 1970
+constexpr std::int64_t kOtherClock = kSecond;              // stamps that are so far off are of another clock
+constexpr std::int64_t kMostLagRange = 5 * kSecond;        // of usable stamps
+constexpr std::int64_t kFar = 60 * kSecond;                // a header stamp from its log time
 constexpr std::int64_t kFarthest = std::int64_t{1} << 62;  // [ns] so that sums of times do not overflow
 constexpr double kBurst = 1.5;                             // mean gap over median gap
 
@@ -119,8 +122,12 @@ std::uint32_t rate_of(const GapStatistics::Pace& pace) noexcept {
 // ==== steps ====
 
 void ClockSteps::add(std::uint64_t ordinal, std::uint32_t source, std::uint64_t log) {
-  const std::int64_t time = static_cast<std::int64_t>(log) + added();
+  std::int64_t time = static_cast<std::int64_t>(log) + added();
   Last& last = last_[source];
+  if (any_ && last.ordinal != 0 && time - std::max(high_, last.time) > kLeap) {
+    steps_.push_back({ordinal, static_cast<std::uint64_t>(high_), added() - (time - high_)});
+    time = high_;
+  }
   const bool falls = any_ && last.ordinal != 0 && time < last.time - kStep;
   if (!any_ || time >= high_) {
     if (lagging_) disorder_ = std::max(disorder_, lag_);
@@ -182,7 +189,7 @@ void RosClock::choose(const std::vector<SourceFacts>& facts, const std::vector<b
     if (use.stamp && std::abs(facts[i].least_lag) > kOtherClock) use.offset = facts[i].least_lag;
     if (use.stamp) {
       least = std::min(least, facts[i].least_lag - use.offset);
-      most = std::max(most, std::min(facts[i].most_lag, facts[i].least_lag + 60 * kSecond) - use.offset);
+      most = std::max(most, std::min(facts[i].most_lag, facts[i].least_lag + kFar) - use.offset);
       continue;
     }
     const auto log = facts[i].log.pace();
@@ -204,8 +211,13 @@ std::optional<std::uint64_t> RosClock::time_of(const RosSample& sample, std::int
   Use& use = uses_[sample.source];
   const std::int64_t log = static_cast<std::int64_t>(sample.log) + added;
   std::int64_t time = log;
-  if (use.stamp && sample.stamp != 0) time = static_cast<std::int64_t>(sample.stamp) + use.offset;
-  if (use.stamp && sample.stamp != 0 && std::abs(time - log) > 60 * kSecond) return std::nullopt;
+  if (use.stamp && sample.stamp != 0) {
+    time = static_cast<std::int64_t>(sample.stamp) + use.offset;
+    const bool goes_on =
+        use.last != 0 && std::abs(time - static_cast<std::int64_t>(use.last)) < kFar;  // it is the log that is odd
+    if (std::abs(time - log) > kFar && !goes_on) return std::nullopt;
+    use.last = static_cast<std::uint64_t>(std::max<std::int64_t>(time, 0));
+  }
   if (use.spread > 0) {
     const auto even = static_cast<std::int64_t>(use.last + use.spread);
     time = use.last != 0 && std::abs(even - log) < use.far ? even : log;

@@ -46,8 +46,8 @@ class GapStatistics {
   std::uint64_t count_ = 0, first_ = 0, last_ = 0, equal_ = 0, backward_ = 0, farthest_back_ = 0, largest_ = 0;
 };
 
-/// Finds where the clock of a recording was set back: times of one channel fall there, and those of all channels lag from then on. Messages
-/// that merely cross between channels catch up.
+/// Finds where the clock of a recording was set: back, where times of one channel fall and those of all channels lag from then on (messages
+/// that merely cross between channels catch up), or forward, where those of one channel leap by about a year.
 class ClockSteps {
  public:
   struct Step {

@@ -230,14 +230,14 @@ void RosSurvey::tell(const mcap::Reader& mcap, bool whole, ReadNotes& notes) {
 
 void RosSurvey::tell_clock(ReadNotes& notes) const {
   if (!strays_.empty())
-    notes.add("", counted(strays_.size(), "message") + " with a log time far from those around: taken between them",
-              "the first is message " + std::to_string(strays_.begin()->first));
+    notes.add("", "a message with a log time far from those around: taken between them",
+              "message " + std::to_string(strays_.begin()->first), strays_.size());
   for (const auto& step : steps_.steps()) {
     const std::int64_t before = steps_.added_at(step.ordinal - 1);
-    notes.add(
-        "",
-        "the clock was set back by " + seconds(1e-9 * static_cast<double>(step.added - before)) + "; what follows goes on there",
-        text_of_time(step.at));
+    notes.add("",
+              std::string("the clock was set ") + (step.added > before ? "back" : "forward") + " by " +
+                  seconds(1e-9 * std::abs(static_cast<double>(step.added - before))) + "; what follows goes on there",
+              text_of_time(step.at));
   }
   if (steps_.disorder() > 0)
     notes.add("", "messages cross in time by up to " + seconds(1e-9 * static_cast<double>(steps_.disorder())) + "; sorted");
@@ -278,7 +278,7 @@ void RosSurvey::tell_stamps(ReadNotes& notes) const {
   }
   const bool is_ahead = most < 0;
   if (is_ahead) least = -std::exchange(most, -least);
-  if (any)
+  if (any && (least != 0 || most != 0))
     notes.add("", "log times are the clock; header stamps, which are " + text(least, "%.9g") + " to " + text(most, "%.9g") +
                       " s " + (is_ahead ? "after" : "before") + " them, are ignored");
 }
@@ -295,9 +295,12 @@ void RosSurvey::tell_rate(ReadNotes& notes) const {
     notes.add(place_of(densest_), "more than half of the time nothing is recorded: check the unit of the times, or give --rate");
   for (std::uint32_t i = 0; i < facts_.size(); ++i) {
     const auto own = clock_.pace(i, facts_);
-    if (moving_[i] && own.period > 0 && std::abs(tick_rate_ * own.period - 1) > 0.1)
-      notes.add(place_of(i), text(1 / own.period, "%.4g") + " samples per second are interpolated to " +
-                                 std::to_string(tick_rate_) + " ticks");
+    if (!moving_[i] || !(own.period > 0) || std::abs(tick_rate_ * own.period - 1) <= 0.1) continue;
+    const Kind kind = samples_.sources()[i].kind;
+    const bool is_curve = (kind == Kind::pose || kind == Kind::link) && tick_rate_ * own.period > 1.5;
+    notes.add(place_of(i), text(1 / own.period, "%.4g") + " samples per second are interpolated to " +
+                               std::to_string(tick_rate_) + " ticks" +
+                               (is_curve ? ", on parabolas where the motion bends alike at neighbours, else on lines" : ""));
   }
 }
 
@@ -306,12 +309,11 @@ void RosSurvey::tell_source(std::uint32_t source, ReadNotes& notes) const {
   const Kind kind = samples_.sources()[source].kind;
   for (const auto& [key, seen] : faults_)
     if (key.first == source)
-      notes.add(place_of(source), counted(seen.count, "sample") + " missing: " + text_of(key.second),
-                "the first " + text_of_time(seen.log));
+      notes.add(place_of(source), std::string("a sample is missing: ") + text_of(key.second), text_of_time(seen.log), seen.count);
   if (const auto found = ignored_.find(source); found != ignored_.end())
     notes.add(place_of(source), kind == Kind::force ? "torques are ignored" : "covariances are ignored");
   if (const auto copies = samples_.copies().find(source); copies != samples_.copies().end())
-    notes.add(place_of(source), counted(copies->second, "sample") + " with the stamp and the value of the one before: left out");
+    notes.add(place_of(source), "a sample with the stamp and the value of the one before: left out", {}, copies->second);
   if (facts.swings())
     notes.add(place_of(source), "its samples go to and fro between two places, up to " + text(facts.return_distance, "%.3g") +
                                     " m apart, as of two publishers: let each have a topic of its own");
@@ -319,11 +321,12 @@ void RosSurvey::tell_source(std::uint32_t source, ReadNotes& notes) const {
   if (!moving_[source]) return tell_rest(source, notes);
   const GapStatistics& times = clock_.takes_stamp(source) ? facts.stamps : facts.log;
   if (times.equal() > 0 && !clock_.spreads(source))
-    notes.add(place_of(source),
-              counted(times.equal(), "sample") + " at the time of the one before: of equal times the last counts");
+    notes.add(place_of(source), "a sample at the time of the one before: of equal times the last counts", {}, times.equal());
   if (facts.log.backward() > 0)
-    notes.add(place_of(source), counted(facts.log.backward(), "time") + " before the one that stands before, by up to " +
-                                    seconds(1e-9 * static_cast<double>(facts.log.farthest_back())) + "; sorted");
+    notes.add(place_of(source),
+              "a time before the one that stands before, by up to " +
+                  seconds(1e-9 * static_cast<double>(facts.log.farthest_back())) + "; sorted",
+              {}, facts.log.backward());
   tell_gaps(source, notes);
 }
 
@@ -350,9 +353,10 @@ void RosSurvey::tell_gaps(std::uint32_t source, ReadNotes& notes) const {
     notes.add(place_of(source),
               "ends " + text_of_time(facts.log.last()) + (is_force ? "; after, the force is 0" : "; after, it rests"));
   if (!clock_.spreads(source) && times.largest() > gap)
-    notes.add(place_of(source), counted(times.longer_than(gap), "gap") + " longer than " + text(gap, "%.3g") +
-                                    " s, the largest " + seconds(times.largest()) +
-                                    (is_force ? ": the force is held for as long, then 0" : ": it rests there"));
+    notes.add(place_of(source),
+              "a gap longer than " + text(gap, "%.3g") + " s, the largest " + seconds(times.largest()) +
+                  (is_force ? ": the force is held for as long, then 0" : ": it rests there"),
+              {}, times.longer_than(gap));
 }
 
 void RosSurvey::tell_frames(ReadNotes& notes) {
@@ -361,9 +365,8 @@ void RosSurvey::tell_frames(ReadNotes& notes) {
     const bool is_link = sources[source].kind == Kind::link;
     notes.add(place_of(source),
               std::string(is_link ? "hangs on another frame: " : "is told in another frame: ") + samples_.name(change.to) +
-                  ", before on " + samples_.name(change.from) +
-                  (change.count > 1 ? ", and so on " + counted(change.count, "time") : "") + "; followed",
-              text_of_time(change.log));
+                  ", before on " + samples_.name(change.from) + "; followed",
+              text_of_time(change.log), change.count);
   }
   for (std::uint32_t i = 0; i < sources.size(); ++i) {
     if (facts_[i].samples == 0) continue;

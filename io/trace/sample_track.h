@@ -2,10 +2,10 @@
 /// Samples of one quantity around a time, where some are missing or come at another rate than ticks: one rule for tables, ROS 2 recordings
 /// and arrays. Internal to the library.
 ///
-/// Between two samples that are not farther apart than the gap, values follow a line and rotations the shorter arc. Elsewhere the value is
-/// that of the first sample ahead of it, of the last one behind it, and between two that are too far apart that of the one before, without
-/// velocity. What has no place to rest at, as a force, is 0 where no such sample is within the gap. Of samples with the same time the last
-/// counts.
+/// Between two samples that are not farther apart than the gap, values follow a line and rotations the shorter arc; poses a parabola in place
+/// of them where the motion bends alike at both samples (Curve). Elsewhere the value is that of the first sample ahead of it, of the last one
+/// behind it, and between two that are too far apart that of the one before, without velocity. What has no place to rest at, as a force, is 0
+/// where no such sample is within the gap. Of samples with the same time the last counts.
 #pragma once
 
 #include <algorithm>
@@ -23,6 +23,36 @@ namespace tactus {
 inline double since(std::int64_t time, std::int64_t other) noexcept { return static_cast<double>(time - other); }
 
 /// in  Time  what since(Time, Time) gives the distance of, as a double in any unit
+/// Motion from one sample to the next. With h the time between them, v the velocity of their chord, u and w those of the chords before and
+/// after, and b0, b1 the accelerations from u to v and from v to w, it has the constant acceleration
+///   b = (b0 + b1)/2, so limited that |b| <= 2 |b0|, 2 |b1| and |b| h/2 <= |u - v|, |w - v|;  0 where b0 and b1 point apart
+/// (the monotonised central limiter of van Leer 1977). So it is off its line by |b| h^2/8 at most, its velocity off that of the line by no
+/// more than those beside are, and a motion that stops, begins, touches or jumps stays on its lines. At a sample it is where the sample is.
+/// Where samples swing to and fro, as those of a noisy tracker do, the velocity is (u + 2v + w)/4: that of one chord is noise.
+struct SampleCurve {
+  struct Part {
+    Vec3 chord, bend;  // v, b, of positions or of angular velocities
+    Vec3 mean;         // (u + 2v + w)/4
+    bool is_noise = false;
+    Vec3 velocity(double h, double share) const noexcept { return is_noise ? mean : chord + ((share - 0.5) * h) * bend; }
+    Vec3 off(double h, double share) const noexcept { return (-0.5 * h * h * share * (1 - share)) * bend; }
+  };
+  Part linear, angular;
+  double span = 0;  ///< h
+
+  /// in  before, after  times of the chords beside
+  static Part part(const Vec3& u, const Vec3& v, const Vec3& w, double before, double h, double after) noexcept {
+    constexpr double kAlike = 4;  // a jump is much faster than what is beside it, and at a stop one side rests
+    const double gained = norm(v - u), lost = norm(w - v), from = std::max(h, (before + h) / 2),
+                 to = std::max(h, (h + after) / 2);
+    const Vec3 b = (1 / (before + h)) * (v - u) + (1 / (h + after)) * (w - v);
+    Part out{v, {}, 0.25 * (u + w) + 0.5 * v};
+    if (dot(v - u, w - v) > 0) out.bend = std::min(1.0, 2 * std::min(gained / from, lost / to) / norm(b)) * b;
+    else out.is_noise = std::max(gained, lost) < kAlike * std::min({gained, lost, norm(u), norm(w)});
+    return out;
+  }
+};
+
 template <class Time>
 class SampleTrack {
  public:
@@ -48,11 +78,11 @@ class SampleTrack {
   explicit SampleTrack(const Limits& limits) : limits_(limits) {}
   /// pre  times do not fall
   void add(const Sample& sample) {
-    has_slopes_ = false;
+    has_slopes_ = has_curve_ = false;
     if (!samples_.empty() && since(sample.at, samples_.back().at) <= limits_.same) samples_.back() = sample;
     else samples_.push_back(sample);
   }
-  void clear() noexcept { samples_.clear(), at_ = 0, has_slopes_ = false, place_ = Place::nowhere; }
+  void clear() noexcept { samples_.clear(), at_ = 0, has_slopes_ = has_curve_ = false, place_ = Place::nowhere; }
   /// pre  times do not fall
   void move_to(const Time& time);
 
@@ -68,14 +98,16 @@ class SampleTrack {
   /// Distance of the two samples around.   pre  place() is between
   double span() const noexcept { return since(samples_[at_ + 1].at, samples_[at_].at); }
   std::uint32_t frame() const noexcept { return samples_[at_].frame; }
-  /// pre  place() is not nowhere
+  /// On lines.   pre  place() is not nowhere
   RigidSample value() const noexcept;
+  /// On curves.   pre  likewise
+  Pose pose() noexcept;
   /// The sample before, as it was told, or the first.   pre  likewise
   const RigidSample& last() const noexcept { return samples_[at_].value; }
   /// Of what is 0 where nothing is known.
   Vec3 vector() const noexcept { return is_known() || is_held() ? value().pose.position : Vec3{}; }
-  /// With velocities that follow from the poses: at a sample over the two beside it, between samples on the line between theirs. So a
-  /// quantity that comes more seldom than ticks has velocities as smooth as its motion, not the steps of its chords.
+  /// On curves, with their velocities: those of what follows a sample. Of samples about as dense as ticks, velocities over the two beside a
+  /// sample, and between samples on the line between theirs.
   /// in  seconds  of a unit of time
   RigidSample moving(double seconds) noexcept;
 
@@ -89,7 +121,16 @@ class SampleTrack {
   bool are_joined(std::size_t a, std::size_t b) const noexcept {
     return samples_[a].frame == samples_[b].frame && since(samples_[b].at, samples_[a].at) <= limits_.gap + limits_.same;
   }
+  bool is_sparse(std::size_t at) const noexcept {
+    return at + 1 < samples_.size() && are_joined(at, at + 1) &&
+           since(samples_[at + 1].at, samples_[at].at) > kSparse * limits_.tick;
+  }
+  std::size_t before(std::size_t at) const noexcept;
+  std::size_t after(std::size_t at) const noexcept;
   Twist slope(std::size_t at, double seconds) const noexcept;
+  const SampleCurve& curve() noexcept;
+
+  static constexpr double kSparse = 1.5;  // ticks
 
   Limits limits_;
   std::deque<Sample> samples_;
@@ -97,14 +138,15 @@ class SampleTrack {
   Time time_{};
   Place place_ = Place::nowhere;
   double share_ = 0;
-  bool has_slopes_ = false;
+  bool has_slopes_ = false, has_curve_ = false;
   Twist from_, to_;
+  SampleCurve curve_;
 };
 
 template <class Time>
 void SampleTrack<Time>::move_to(const Time& time) {
   time_ = time;
-  while (at_ + 1 < samples_.size() && since(samples_[at_ + 1].at, time) <= limits_.same) ++at_, has_slopes_ = false;
+  while (at_ + 1 < samples_.size() && since(samples_[at_ + 1].at, time) <= limits_.same) ++at_, has_slopes_ = has_curve_ = false;
   while (at_ > 1 && 2 * since(samples_[at_].at, samples_[1].at) >= limits_.tick) samples_.pop_front(), --at_;
   share_ = 0;
   place_ = Place::nowhere;
@@ -132,9 +174,25 @@ RigidSample SampleTrack<Time>::value() const noexcept {
 }
 
 template <class Time>
+Pose SampleTrack<Time>::pose() noexcept {
+  Pose pose = value().pose;
+  if (place_ != Place::between || !is_sparse(at_)) return pose;
+  const SampleCurve& way = curve();
+  pose.position = pose.position + way.linear.off(way.span, share_);
+  if (way.angular.bend != Vec3{}) pose.rotation = rotation_of(way.angular.off(way.span, share_)) * pose.rotation;
+  return pose;
+}
+
+template <class Time>
 RigidSample SampleTrack<Time>::moving(double seconds) noexcept {
-  RigidSample value = this->value();
-  if (!is_known()) return value;
+  if (!is_known()) return value();
+  RigidSample value{pose(), {}, {}};
+  if (is_sparse(at_)) {
+    const SampleCurve& way = curve();
+    value.velocity = (1 / seconds) * way.linear.velocity(way.span, share_);
+    value.angular_velocity = (1 / seconds) * way.angular.velocity(way.span, share_);
+    return value;
+  }
   if (!has_slopes_) {
     from_ = slope(at_, seconds);
     to_ = at_ + 1 < samples_.size() ? slope(at_ + 1, seconds) : Twist{};
@@ -145,17 +203,50 @@ RigidSample SampleTrack<Time>::moving(double seconds) noexcept {
   return value;
 }
 
-/// From the nearest sample before that is half a tick away to such a one after; one of them, where the other is not joined.
+/// Nearest sample before that is half a tick away, or the farthest that is joined; itself if none is.
+template <class Time>
+std::size_t SampleTrack<Time>::before(std::size_t at) const noexcept {
+  std::size_t from = at;
+  while (from > 0 && (from == at || 2 * since(samples_[at].at, samples_[from].at) < limits_.tick) && are_joined(from - 1, from))
+    --from;
+  return from;
+}
+
+template <class Time>
+std::size_t SampleTrack<Time>::after(std::size_t at) const noexcept {
+  std::size_t to = at;
+  while (to + 1 < samples_.size() && (to == at || 2 * since(samples_[to].at, samples_[at].at) < limits_.tick) &&
+         are_joined(to, to + 1))
+    ++to;
+  return to;
+}
+
+/// Over the two samples beside; of one, where the other is not joined.
 template <class Time>
 Twist SampleTrack<Time>::slope(std::size_t at, double seconds) const noexcept {
-  const auto is_far = [&](std::size_t a, std::size_t b) {
-    return a != b && 2 * since(samples_[b].at, samples_[a].at) >= limits_.tick;
-  };
-  std::size_t from = at, to = at;
-  while (from > 0 && !is_far(from, at) && are_joined(from - 1, from)) --from;
-  while (to + 1 < samples_.size() && !is_far(at, to) && are_joined(to, to + 1)) ++to;
+  const std::size_t from = before(at), to = after(at);
   if (from == to) return {};
   return motion_between(samples_[from].value.pose, samples_[to].value.pose, seconds * since(samples_[to].at, samples_[from].at));
+}
+
+/// From the sample at_ to the next.   pre  is_sparse(at_)
+template <class Time>
+const SampleCurve& SampleTrack<Time>::curve() noexcept {
+  if (has_curve_) return curve_;
+  const auto time = [&](std::size_t a, std::size_t b) { return since(samples_[b].at, samples_[a].at); };
+  const auto chord = [&](std::size_t a, std::size_t b) {
+    return motion_between(samples_[a].value.pose, samples_[b].value.pose, time(a, b));
+  };
+  const std::size_t first = before(at_), last = after(at_ + 1);
+  const Twist way = chord(at_, at_ + 1);
+  curve_ = {{way.linear, {}, {}}, {way.angular, {}, {}}, time(at_, at_ + 1)};
+  if (first != at_ && last != at_ + 1) {
+    const Twist from = chord(first, at_), to = chord(at_ + 1, last);
+    curve_.linear = SampleCurve::part(from.linear, way.linear, to.linear, time(first, at_), curve_.span, time(at_ + 1, last));
+    curve_.angular = SampleCurve::part(from.angular, way.angular, to.angular, time(first, at_), curve_.span, time(at_ + 1, last));
+  }
+  has_curve_ = true;
+  return curve_;
 }
 
 template <class Time>

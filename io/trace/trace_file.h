@@ -175,6 +175,7 @@ class TraceReader {
   static tl::expected<TraceReader, Diagnostic> open(const std::string& path, const ReadOptions& options);
   /// The same from memory that outlives the reader.
   static Result<TraceReader> open_memory(std::span<const std::uint8_t> bytes);
+  static tl::expected<TraceReader, Diagnostic> open_memory(std::span<const std::uint8_t> bytes, const ReadOptions& options);
   /// What was decided about the files of a folder and about a foreign recording; complete once next() has returned false.
   std::vector<ReadNote> notes() const;
   /// What OnDamage::skip left out so far.

@@ -102,10 +102,15 @@ Result<TraceReader> TraceReader::open(const std::string& path) {
   return open(path, {}).map_error([](const Diagnostic& error) { return error.error; });
 }
 
-Result<TraceReader> TraceReader::open_memory(std::span<const std::uint8_t> bytes) try {
-  return Impl::open({.memory = bytes}, {}).map_error([](const Diagnostic& error) { return error.error; });
+tl::expected<TraceReader, Diagnostic> TraceReader::open_memory(std::span<const std::uint8_t> bytes,
+                                                               const ReadOptions& options) try {
+  return Impl::open({.memory = bytes}, options);
 } catch (const std::bad_alloc&) {
-  return out_of_memory();
+  return tl::unexpected(Diagnostic{.error = out_of_memory().value()});
+}
+
+Result<TraceReader> TraceReader::open_memory(std::span<const std::uint8_t> bytes) {
+  return open_memory(bytes, {}).map_error([](const Diagnostic& error) { return error.error; });
 }
 
 std::vector<ReadNote> TraceReader::notes() const {
@@ -117,7 +122,7 @@ std::vector<ReadNote> TraceReader::notes() const {
 const std::vector<ReadLoss>& TraceReader::losses() const noexcept { return impl_->mcap.losses(); }
 
 Diagnostic TraceReader::explain(const Error& error) const {
-  if (std::string cause = impl_->assembler->detail(); !cause.empty()) return {.error = error, .cause = std::move(cause)};
+  if (const Diagnostic* refused = impl_->assembler->refused()) return *refused;
   return impl_->mcap.explain(error);
 }
 

@@ -345,7 +345,7 @@ Read GltfScene::make_rest(const GltfOptions& options) {
   }
   rest_ = std::move(*made);
   rest_.unused_vertices = 0;  // of vertices that were joined
-  for (const ReadNote& note : rest_.notes.all()) notes.add(note.where, note.what, note.first);
+  for (const ReadNote& note : rest_.notes.all()) notes.add(note);
   rest_.notes = std::move(notes);
   return {};
 }

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
+#include <numeric>
+#include <utility>
 
 #include <tactus/base/rule.h>
+#include <tactus/sim/surface/ear_clipping.h>
 #include <tactus/sim/surface/gltf_scene.h>
 #include <tactus/sim/surface/polygon_file.h>
 
@@ -46,8 +50,13 @@ class SurfaceMaker {
     file_.dropped_faces = degenerate_;
     if (file_.mesh.triangles.empty()) return broken(Errc::invalid, "R-SRF-7", "no face has an area");
     if (degenerate_ > 0) drop_unused();
-    if (const auto checked = check(file_.mesh); !checked) return in_file(checked.error());
     file_.unused_vertices = soup_.vertices.size() - file_.mesh.vertices.size();
+    auto checked = check(file_.mesh);
+    if (!checked && checked.error().error.rule == std::string_view("R-SRF-13")) {
+      split_fans();
+      checked = check(file_.mesh);
+    }
+    if (!checked) return in_file(checked.error());
     file_.notes = std::move(soup_.notes);
     return std::move(file_);
   }
@@ -98,7 +107,7 @@ class SurfaceMaker {
     if (polygon.size() == 3) {
       file_.mesh.triangles.push_back({polygon[0], polygon[1], polygon[2]});
     } else {
-      if (!append_fan(polygon)) return at_face(face, fail(Errc::invalid, "R-SRF-6").value(), corners(face));
+      if (!append_fan(polygon)) TACTUS_CHECK(append_ears(face, polygon));
       ++file_.polygons;
     }
     face_.resize(file_.mesh.triangles.size(), static_cast<std::uint32_t>(face));
@@ -128,6 +137,66 @@ class SurfaceMaker {
       mesh.triangles.resize(start);
     }
     return false;
+  }
+
+  tl::expected<void, Diagnostic> append_ears(std::size_t face, const Polygon& polygon) {
+    std::vector<Vec3> places;
+    for (const std::uint32_t v : polygon) places.push_back(file_.mesh.vertices[v]);
+    const EarClipping ears(places, polygon_normal(file_.mesh.vertices, polygon));
+    const Error error = fail(Errc::invalid, "R-SRF-6").value();
+    if (const auto crossing = ears.crossing()) {
+      const auto edge = [&](std::size_t from) {
+        const std::size_t ends[] = {from, (from + 1) % polygon.size()};
+        std::string out;
+        for (const std::size_t at : ends)
+          out += (out.empty() ? "" : " to ") + (soup_.first_number ? number(file_.vertex[polygon[at]]) : place_of(places[at]));
+        return out;
+      };
+      return at_face(face, error, "its edges " + edge(crossing->first) + " and " + edge(crossing->second) + " cross");
+    }
+    const auto triangles = ears.clip();
+    if (!triangles) return at_face(face, error, corners(face));
+    for (const auto& [a, b, c] : *triangles) file_.mesh.triangles.push_back({polygon[a], polygon[b], polygon[c]});
+    return {};
+  }
+
+  /// Give each fan of triangles around a vertex a vertex of its own: surfaces that touch at a point are apart there.
+  /// pre  every edge belongs to two triangles at most, of opposite direction
+  void split_fans() {
+    TriMesh& mesh = file_.mesh;
+    std::vector<std::size_t> fan(3 * mesh.triangles.size());  // of a corner: another one of the same fan, or itself
+    std::iota(fan.begin(), fan.end(), std::size_t{0});
+    const auto root = [&fan](std::size_t corner) {
+      while (fan[corner] != corner) corner = fan[corner] = fan[fan[corner]];
+      return corner;
+    };
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> leaving;  // edge: the corner that it leaves
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      const Triangle& t = mesh.triangles[i / 3];
+      leaving[{t[i % 3], t[(i + 1) % 3]}] = i;
+    }
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      const Triangle& t = mesh.triangles[i / 3];
+      const auto beside = leaving.find({t[i % 3], t[(i + 2) % 3]});
+      if (beside != leaving.end()) fan[std::max(root(i), root(beside->second))] = std::min(root(i), root(beside->second));
+    }
+    std::vector<bool> is_taken(mesh.vertices.size(), false);
+    std::map<std::size_t, std::uint32_t> own;  // of fans behind the first
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      std::uint32_t& corner = mesh.triangles[i / 3][i % 3];
+      if (root(i) != i) {
+        if (const auto found = own.find(root(i)); found != own.end()) corner = found->second;
+      } else if (!is_taken[corner]) {
+        is_taken[corner] = true;
+      } else {
+        soup_.notes.add("vertices", "one that joins parts of the surface at a point alone is split: each part has its own",
+                        soup_.first_number ? "vertex " + number(file_.vertex[corner]) : "at " + place_of(mesh.vertices[corner]));
+        file_.vertex.push_back(file_.vertex[corner]);
+        const Vec3 place = mesh.vertices[corner];
+        mesh.vertices.push_back(place);
+        corner = own[i] = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+      }
+    }
   }
 
   /// Vertices that only dropped faces used.

@@ -14,7 +14,7 @@
 ///                           that is not read, or names a file that does not lie beside it
 /// R-SRF-4   malformed       a line is not one of the format
 /// R-SRF-5   malformed       the file ends before everything announced was there
-/// R-SRF-6   invalid         a polygon has fewer than 3 or more than 1024 corners, or no corner from which all of it is seen
+/// R-SRF-6   invalid         a polygon has fewer than 3 or more than 1024 corners, or crosses itself
 /// R-SRF-7   invalid         it holds no face
 /// R-SEQ-6   invalid         no mesh hangs on a node of the name that is given (glTF)
 /// R-SEQ-7   limit_exceeded  it uses more than 2^25 numbers (glTF)
@@ -29,7 +29,8 @@
 namespace tactus::sim {
 
 struct SurfaceFile {
-  TriMesh mesh;                       ///< passed check(); STL: vertices with the same coordinates are one
+  TriMesh mesh;                       ///< passed check(); STL: vertices with the same coordinates are one;
+                                      ///< a vertex of several fans is one for each
   std::size_t polygons = 0;           ///< faces of more than three corners, cut into triangles
   std::size_t unused_vertices = 0;    ///< of no face, left out
   std::size_t dropped_faces = 0;      ///< without area, left out because the options say so

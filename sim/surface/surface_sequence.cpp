@@ -29,8 +29,6 @@ std::string spelt(double value) {
   return {digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 6).ptr};
 }
 
-std::string counted(std::size_t files) { return std::to_string(files) + (files == 1 ? " file" : " files"); }
-
 /// Names of the folder's frames; what is left out is noted.
 tl::expected<std::vector<std::string>, Diagnostic> surfaces_in(const std::string& folder, ReadNotes& notes) {
   std::vector<std::string> files, backups, others;
@@ -46,10 +44,11 @@ tl::expected<std::vector<std::string>, Diagnostic> surfaces_in(const std::string
     }
   }
   if (error) return broken(Errc::io, "R-SEQ-1", fs::is_regular_file(folder, ignored) ? "a file, not a folder" : "", folder);
-  if (!backups.empty())
-    notes.add("", counted(backups.size()) + " left out as hidden or a copy", *std::min_element(backups.begin(), backups.end()));
-  if (!others.empty())
-    notes.add("", counted(others.size()) + " of another kind left out", *std::min_element(others.begin(), others.end()));
+  const auto tell = [&notes](const std::vector<std::string>& names, const char* what) {
+    if (!names.empty()) notes.add("", what, *std::min_element(names.begin(), names.end()), names.size());
+  };
+  tell(backups, "a file is left out as hidden or a copy");
+  tell(others, "a file of another kind is left out");
   if (files.empty()) return broken(Errc::invalid, "R-SEQ-2", "no .obj, .ply or .off file", folder);
   return files;
 }
@@ -92,11 +91,10 @@ tl::expected<SurfaceSequence, Diagnostic> SurfaceSequence::open_scene(const std:
 
 /// The shape at rest, and what was decided about it.
 void SurfaceSequence::take(SurfaceFile&& first) {
-  for (const ReadNote& note : first.notes.all()) notes_.add(note.where, note.what, note.first);
-  if (first.dropped_faces > 0)
-    notes_.add("", "faces without area in the first frame left out: " + std::to_string(first.dropped_faces));
-  if (first.unused_vertices > 0) notes_.add("", "vertices of no face left out: " + std::to_string(first.unused_vertices));
-  if (first.polygons > 0) notes_.add("", "faces cut into triangles: " + std::to_string(first.polygons));
+  for (const ReadNote& note : first.notes.all()) notes_.add(note);
+  notes_.add("", "a face without area in the first frame is left out", {}, first.dropped_faces);
+  notes_.add("", "a vertex of no face is left out", {}, first.unused_vertices);
+  notes_.add("", "a face is cut into triangles", {}, first.polygons);
   used_ = std::move(first.vertex);
   rest_ = std::move(first.mesh);
 }

@@ -124,7 +124,7 @@ def another_parent(path):
 def no_number(path):
     t = Table(path)
     is_motion(t, 1000, 60, name="tool")
-    says(t.notes, "/tool/wrench: 5 samples missing: a number is NaN or infinite (the first at 0.000 s)")
+    says(t.notes, "/tool/wrench: a sample is missing: a number is NaN or infinite (5 times, the first at 0.000 s)")
 
 
 def two_channels(path):
@@ -180,7 +180,7 @@ def no_names(path):
 def jitter(path):
     t = Table(path, "csv", "--time", "t", *XYZ, *TURN)
     is_motion(t, 1000, 39, within=1e-3)
-    says(t.notes, "times lie on no grid: resampled at 1000 Hz", "samples interpolated: 38")
+    says(t.notes, "times lie on no grid: resampled at 1000 Hz", "a sample is interpolated, over at most", "(38 times)")
 
 
 def twice(path):
@@ -196,7 +196,7 @@ def twice(path):
 def dropout(path):
     t = Table(path, "csv", "--time", "t", *XYZ, *TURN)
     is_motion(t, 1000, 40, first=89, within=1.6e-4)  # a chord over 11 samples
-    says(t.notes, "a sample is missing: a rotation of length 0 (10 times, the first line 13", "samples interpolated: 10")
+    says(t.notes, "a sample is missing: a rotation of length 0 (10 times, the first line 13", "a sample is interpolated, over at most", "(10 times)")
     refused(["import", "csv", path, "--time", "t", *XYZ, *TURN, "--strict", "-o", "o.mcap"], "line 13", "R-CSV-4")
 
 
@@ -229,7 +229,7 @@ def commas(path):
 def quoted(path):
     t = Table(path, "csv", "--time", "t", *XYZ)
     is_motion(t, 1000, 19, numbers=3, within=5.1e-5)
-    says(t.notes, "76 numbers in quotes have a comma")
+    says(t.notes, "a number in quotes has a comma, which is taken for the decimal point (76 times)")
 
 
 # ==== surfaces that move ====
@@ -261,7 +261,7 @@ def two_bodies(path):
 
 
 def appledouble(path):
-    frames(path, range(2), [0, 0.01], "1 file left out as hidden or a copy (._f_0.obj)")
+    frames(path, range(2), [0, 0.01], "a file is left out as hidden or a copy (._f_0.obj)")
 
 
 # ==== surfaces and tetrahedra ====

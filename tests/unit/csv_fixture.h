@@ -57,7 +57,7 @@ inline CsvMapping xyz() {
 inline std::vector<std::string> notes_of(const Imported& outcome) {
   std::vector<std::string> out;
   for (const ReadNote& note : outcome.done.notes.all())
-    if (note.where.empty()) out.push_back(note.what);
+    if (note.where.empty()) out.push_back(note.what + (note.count > 1 ? " x" + std::to_string(note.count) : ""));
   return out;
 }
 

@@ -50,7 +50,7 @@ TEST(CsvPace, RowsThatComeInBurstsAreSpreadEvenly) {
   EXPECT_EQ(equal.frames[7].objects[0].pose.position.x, 0.007);
   EXPECT_EQ(notes_of(equal), (std::vector<std::string>{
                                  "several rows share a time or come in groups, of 10 rows each 0.01 s: spread evenly, 1000 rows "
-                                 "per second (--no-resample refuses such tables)"}));
+                                 "per second"}));
   expect_even(import(moving(300, 1000, [&](int i) { return burst(i) + i % 10 * 2e-5; }), timed()), 1000, 1e-9);  // nearly at once
   const auto in_seconds = [](int i) { return std::floor((i + 370) / 1000.0); };  // a clock of whole seconds, begun within one
   const Imported coarse = import(moving(6000, 1000, in_seconds), timed());
@@ -240,8 +240,8 @@ TEST(CsvPace, WhereTheTimeFallsTheNextRecordingBeginsIfItIsSaid) {
   EXPECT_EQ(outcome.done.segments, 3u);
   EXPECT_EQ(outcome.frames[400].objects[0].pose.position.x, 0);
   EXPECT_EQ(outcome.frames[400].objects[0].velocity.x, 0);
-  EXPECT_EQ(notes_of(outcome), (std::vector<std::string>{"the time falls: another segment begins",
-                                                         "lines of names come again and are left out: 2"}));
+  EXPECT_EQ(notes_of(outcome), (std::vector<std::string>{"the time falls: another segment begins x2",
+                                                         "a line of names comes again and is left out x2"}));
 }
 
 TEST(CsvPace, RowsInReverseAreNamedAsThat) {
@@ -321,7 +321,7 @@ TEST(CsvPace, RotationVectorsAndMatrices) {
   }
   std::string stretched = text.str();
   stretched.replace(stretched.find(",0,0,1\n"), 7, ",0,0,2\n");
-  EXPECT_EQ(notes_of(import(stretched, matrix)).back(), "samples interpolated: 1, over at most 0 s");
+  EXPECT_EQ(notes_of(import(stretched, matrix)).back(), "a sample is interpolated, over at most 0 s");
 }
 
 TEST(CsvPace, TheRotationOfADeviceIsKept) {
@@ -366,7 +366,7 @@ TEST(CsvPace, HeldSamplesAreCounted) {
   EXPECT_EQ(outcome.frames[55].objects[1].pose.position.x, 5);
   EXPECT_EQ(outcome.frames[55].objects[0].pose.position.x, 55);
   EXPECT_EQ(notes_of(outcome),
-            std::vector<std::string>{"samples held: 30, as others of the table go on: none for more than 0.1 s (--gap)"});
+            std::vector<std::string>{"a sample is held, as others of the table go on: none for more than 0.1 s (--gap) x30"});
 }
 
 TEST(CsvPace, ALastLineWithoutAnEndIsTakenIfItIsSaid) {

@@ -471,9 +471,9 @@ TEST(Csv, NotesCountWhatWasDecided) {
   ASSERT_EQ(outcome.frames.size(), 70u) << outcome.rule;
   EXPECT_EQ(outcome.frames.back().tick, 99);
   EXPECT_EQ(notes_of(outcome),
-            (std::vector<std::string>{"samples interpolated: 1, over at most 0.02 s",
-                                      "ticks left out: 30: nothing was recorded for more than 0.1 s (--gap)",
-                                      "rows with the time, or the tick, of a row before: 1; the last of each counts"}));
+            (std::vector<std::string>{"a sample is interpolated, over at most 0.02 s",
+                                      "a tick is left out: nothing was recorded for more than 0.1 s (--gap) x30",
+                                      "a row with the time, or the tick, of a row before; the last of each counts"}));
 }
 
 TEST(Csv, MissingValuesArePutBetweenTheirNeighbours) {

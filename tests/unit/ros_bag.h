@@ -136,8 +136,11 @@ class RosBag {
   std::map<std::string, std::uint16_t> channels_;
 };
 
-inline bool has(const std::vector<ReadNote>& notes, std::string_view where, std::string_view what) {
-  return std::ranges::any_of(notes, [&](const ReadNote& note) { return note.where == where && note.what == what; });
+/// in  count  0: any
+inline bool has(const std::vector<ReadNote>& notes, std::string_view where, std::string_view what, std::uint64_t count = 0) {
+  return std::ranges::any_of(notes, [&](const ReadNote& note) {
+    return note.where == where && note.what == what && (count == 0 || note.count == count);
+  });
 }
 inline bool has(const Notes& notes, std::string_view where, std::string_view what) {
   return std::ranges::find(notes, std::pair(std::string(where), std::string(what))) != notes.end();

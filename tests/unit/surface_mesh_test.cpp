@@ -3,8 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
+#include <iomanip>
+#include <numbers>
+#include <sstream>
 
 #include "tests/unit/tet_fixture.h"
 
@@ -118,10 +123,112 @@ TEST(SurfaceFile, PolygonsAreCutWhereTheyCanBe) {
     const auto& v = dart->mesh.vertices;
     EXPECT_EQ(cross(v[b] - v[a], v[c] - v[a]).z, 3);
   }
-  // A comb: no corner sees both gaps.
-  expect_broken(
-      parse_surface("v 0 0 0\nv 5 0 0\nv 5 2 0\nv 4 2 0\nv 4 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5 6 7 8\n", ".obj"),
-      "R-SRF-6", "vertices 1 2 3 4 5 6 7 8");
+}
+
+/// An OBJ of one polygon in the plane that x and y span in `place`.
+std::string polygon_of(const std::vector<std::array<double, 2>>& corners, const std::function<Vec3(double, double)>& place) {
+  std::ostringstream text;
+  text << std::setprecision(17);
+  for (const auto& [x, y] : corners) {
+    const Vec3 p = place(x, y);
+    text << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  }
+  text << 'f';
+  for (std::size_t i = 1; i <= corners.size(); ++i) text << ' ' << i;
+  text << '\n';
+  return text.str();
+}
+
+TEST(SurfaceFile, PolygonsThatAreNotConvexAreCutByTheirEars) {
+  struct Case {
+    const char* name;
+    std::vector<std::array<double, 2>> corners;
+    double area;
+  };
+  std::vector<std::array<double, 2>> star, spiral;
+  for (int i = 0; i < 200; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 200, r = i % 2 == 0 ? 1 : 0.3;
+    star.push_back({r * std::cos(angle), r * std::sin(angle)});
+  }
+  for (int i = 0; i < 60; ++i) spiral.push_back({(1 + 0.1 * i) * std::cos(0.3 * i), (1 + 0.1 * i) * std::sin(0.3 * i)});
+  for (int i = 59; i >= 0; --i) spiral.push_back({(0.5 + 0.1 * i) * std::cos(0.3 * i), (0.5 + 0.1 * i) * std::sin(0.3 * i)});
+  std::ranges::reverse(spiral);
+  const auto area_of = [](const auto& corners) {
+    double twice = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const auto &a = corners[i], &b = corners[(i + 1) % corners.size()];
+      twice += a[0] * b[1] - b[0] * a[1];
+    }
+    return std::abs(twice) / 2;
+  };
+  const std::vector<Case> cases{
+      {"comb, no corner sees both gaps", {{0, 0}, {5, 0}, {5, 2}, {4, 2}, {4, 1}, {1, 1}, {1, 2}, {0, 2}}, 7},
+      {"corners on straight edges", {{0, 0}, {1, 0}, {2, 0}, {2, 2}, {1, 2}, {1, 1}, {0, 1}, {0, 0.5}}, 3},
+      {"a hole, with a bridge to it", {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}}, 12},
+      {"star", star, area_of(star)},
+      {"spiral", spiral, area_of(spiral)}};
+  const std::function<Vec3(double, double)> places[] = {[](double x, double y) {
+                                                          return Vec3{x, y, 7};
+                                                        },
+                                                        [](double x, double y) {
+                                                          return Vec3{y, x, 7};
+                                                        },
+                                                        [](double x, double y) {
+                                                          return Vec3{-3, x, y};
+                                                        },
+                                                        [](double x, double y) {
+                                                          return Vec3{x, 0.2 * x + 5, -y};
+                                                        },
+                                                        [](double x, double y) {
+                                                          return Vec3{x + 1e5, y - 2e5, 0.5 * x - y};
+                                                        }};
+  for (const Case& c : cases)
+    for (const auto& place : places) {
+      const auto file = parse_surface(polygon_of(c.corners, place), ".obj");
+      ASSERT_TRUE(file) << c.name << ": " << to_string(file.error());
+      EXPECT_EQ(file->mesh.triangles.size(), c.corners.size() - 2) << c.name;
+      const Vec3 along = cross(place(1, 0) - place(0, 0), place(0, 1) - place(0, 0));
+      double area = 0, sign = 0;
+      for (const auto& [i, j, k] : file->mesh.triangles) {
+        const auto& v = file->mesh.vertices;
+        const double part = dot(cross(v[j] - v[i], v[k] - v[i]), along) / (2 * dot(along, along));
+        if (sign == 0) sign = part;
+        EXPECT_GT(part * sign, 0) << c.name;  // all face one way: none overlap
+        area += std::abs(part);
+      }
+      EXPECT_NEAR(area, c.area, 1e-6) << c.name;
+    }
+}
+
+TEST(SurfaceFile, APolygonThatCrossesItselfIsNamedWithThePlace) {
+  expect_broken(parse_surface("v 0 0 0\nv 2 0 0\nv 0 2 0\nv 3 2 0\nf 1 2 3 4\n", ".obj"), "R-SRF-6",
+                "its edges 2 to 3 and 4 to 1 cross");
+  expect_broken(parse_surface("OFF\n5 1 0\n0 3 0\n2 -3 0\n-3 1 0\n3 1 0\n-2 -3 0\n5 0 1 2 3 4\n", ".off"), "R-SRF-6",
+                "its edges 0 to 1 and 2 to 3 cross");
+}
+
+/// Two tetrahedra that touch at a corner, and a third one at another corner of the second.
+TEST(SurfaceFile, PartsThatTouchAtAPointAreSplitThere) {
+  const std::string text =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\nv -2 0 0\nv -1 -1 0\nv -1 0 -1\n"
+      "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+      "f 1 5 6\nf 1 7 5\nf 5 7 6\nf 1 6 7\n"
+      "f 5 8 9\nf 5 10 8\nf 8 10 9\nf 5 9 10\n";
+  const auto file = parse_surface(text, ".obj");
+  ASSERT_TRUE(file) << to_string(file.error());
+  EXPECT_EQ(file->mesh.vertices.size(), 12U);
+  EXPECT_EQ(file->vertex.size(), 12U);
+  EXPECT_EQ(file->vertex[10] + file->vertex[11], 4U);  // copies of the first and the fifth vertex of the file
+  EXPECT_EQ(file->unused_vertices, 0U);
+  for (std::size_t v = 0; v < 12; ++v) EXPECT_EQ(file->mesh.vertices[v], file->mesh.vertices[file->vertex[v]]);
+  for (std::size_t i = 0; i < 12; ++i)  // each tetrahedron has its own four
+    for (std::size_t k = 0; k < 12; ++k)
+      for (const std::uint32_t a : file->mesh.triangles[i])
+        for (const std::uint32_t b : file->mesh.triangles[k]) EXPECT_FALSE(i / 4 != k / 4 && a == b);
+  ASSERT_EQ(file->notes.all().size(), 1U);
+  EXPECT_EQ(file->notes.all()[0].what, "one that joins parts of the surface at a point alone is split: each part has its own");
+  EXPECT_EQ(file->notes.all()[0].first, "vertex 1");
+  EXPECT_EQ(file->notes.all()[0].count, 2U);
 }
 
 TEST(SurfaceFile, WhatIsAnnouncedMustBeThere) {

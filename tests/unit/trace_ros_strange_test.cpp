@@ -74,7 +74,7 @@ TEST(TraceRosStrange, CopiesAreLeftOut) {
   auto reader = bag.open();
   ASSERT_TRUE(reader);
   EXPECT_EQ(reader->info().tick_rate, 10u);
-  EXPECT_TRUE(has(reader->notes(), "/tool/pose", "796 samples with the stamp and the value of the one before: left out"));
+  EXPECT_TRUE(has(reader->notes(), "/tool/pose", "a sample with the stamp and the value of the one before: left out", 796));
   const Reading reading = read_all(std::move(reader));
   ASSERT_EQ(reading.frames.size(), 200u);
   for (std::size_t i = 2; i < 200; ++i) expect_near(reading.frames[i].objects[0].velocity, {0.1, 0, 0}, 1e-6);
@@ -98,7 +98,7 @@ TEST(TraceRosStrange, AStrayLogTimeIsTakenBetweenItsNeighbours) {
       auto reader = bag.open();
       ASSERT_TRUE(reader);
       EXPECT_EQ(reader->info().tick_rate, 100u) << which;
-      EXPECT_TRUE(has(reader->notes(), "", "1 message with a log time far from those around: taken between them"))
+      EXPECT_TRUE(has(reader->notes(), "", "a message with a log time far from those around: taken between them"))
           << all_of(reader->notes());
       const Reading reading = read_all(std::move(reader));
       ASSERT_NEAR(static_cast<double>(reading.frames.size()), 100, which == 50 ? 0 : 1) << which;
@@ -197,9 +197,9 @@ TEST(TraceRosStrange, WhatPausesForTenSeconds) {
   }
   auto reader = bag.open();
   ASSERT_TRUE(reader);
-  EXPECT_TRUE(has(reader->notes(), "/tool/pose", "1 gap longer than 0.1 s, the largest 10.010 s: it rests there"));
+  EXPECT_TRUE(has(reader->notes(), "/tool/pose", "a gap longer than 0.1 s, the largest 10.010 s: it rests there"));
   EXPECT_TRUE(has(reader->notes(), "/arm/wrench",
-                  "1 gap longer than 0.1 s, the largest 10.010 s: the force is held for as long, then 0"));
+                  "a gap longer than 0.1 s, the largest 10.010 s: the force is held for as long, then 0"));
   const Reading reading = read_all(std::move(reader));
   ASSERT_EQ(reading.frames.size(), 1500u);
   for (std::size_t i = 0; i < 1500; ++i) {
@@ -219,7 +219,7 @@ TEST(TraceRosStrange, WhatIsNotUsedMayBeNotANumber) {
   }
   auto reader = bag.open();
   ASSERT_TRUE(reader);
-  EXPECT_TRUE(has(reader->notes(), "twist of /odom", "20 samples missing: a number is NaN or infinite"))
+  EXPECT_TRUE(has(reader->notes(), "twist of /odom", "a sample is missing: a number is NaN or infinite", 20))
       << all_of(reader->notes());
   const Reading reading = read_all(std::move(reader));
   ASSERT_EQ(reading.frames.size(), 20u);
@@ -291,10 +291,25 @@ TEST(TraceRosStrange, OptionsOfReading) {
 }
 
 /// An error of next() is told with the topic and the time.
+/// As of a computer that began in 1970 and was told the time while it recorded.
+TEST(TraceRosStrange, AClockThatWasSetForwardGoesOnThere) {
+  RosBag bag, same;
+  for (RosBag* one : {&bag, &same})
+    for (int i = 0; i < 40; ++i) {
+      const double time = 10 * i + (i < 20 ? 0 : 2.5e12);  // 79 years later
+      one->add(time, "/tool/pose", kPoseSchema, along_x(0.001 * i)).force(time, "sensor", {0, 0, 1});
+    }
+  EXPECT_TRUE(has(same.notes(), "", "the clock was set forward by 2500000000.010 s; what follows goes on there"));
+  const Reading reading = read_all(bag.open());
+  ASSERT_EQ(reading.frames.size(), 39u);  // the first sample behind the leap stands where the last one ahead of it stood
+  EXPECT_EQ(reading.frames.back().tick, 38);
+  EXPECT_NEAR(reading.frames.back().objects[0].pose.position.x, 0.039, 1e-7);
+}
+
 TEST(TraceRosStrange, ATimeBehindAllOthersIsTold) {
   RosBag bag;
-  for (int i = 0; i < 20; ++i) bag.add(10 * i, "/tool/pose", kPoseSchema, along_x(0.001 * i));
-  for (int i = 0; i < 20; ++i) bag.add(2.5e12 + 10 * i, "/tool/pose", kPoseSchema, along_x(0.001 * i));  // 79 years later
+  for (int i = 0; i < 120; ++i)  // from the twentieth on they are 0.9 years apart, as longer leaps are of the clock
+    bag.add(10 * i + 2.8e10 * std::max(0, i - 20), "/tool/pose", kPoseSchema, along_x(0.001 * i));
   auto reader = bag.open();
   ASSERT_TRUE(reader);
   TraceFrame frame;
@@ -302,7 +317,9 @@ TEST(TraceRosStrange, ATimeBehindAllOthersIsTold) {
   while (more && *more) more = reader->next(frame);
   ASSERT_FALSE(more);
   EXPECT_EQ(more.error().rule, std::string_view("R-TRC-15"));
-  EXPECT_EQ(reader->explain(more.error()).cause, "/tool/pose, at 2500000000 s: more than a trace can hold");
+  const Diagnostic told = reader->explain(more.error());
+  EXPECT_EQ(told.detail, "/tool/pose, at 2156000000 s");
+  EXPECT_EQ(told.cause, "times go on to more than the 2^31 s that a trace holds");
 }
 
 }  // namespace

@@ -251,7 +251,7 @@ TEST(TraceRos, WhatComesSeldomMovesSmoothly) {
   EXPECT_EQ(reader->info().tick_rate, 1000u);
   const Reading reading = read_all(std::move(reader));
   ASSERT_EQ(reading.frames.size(), 1001u);
-  for (std::size_t i = 40; i <= 960; ++i) {
+  for (std::size_t i = 40; i < 960; ++i) {  // the first and the last stretch are lines
     const double t = 0.001 * static_cast<double>(i), a = angle(t), w = std::cos(2 * t);
     const auto& objects = reading.frames[i].objects;  // the tool, the arm
     expect_near(objects[1].angular_velocity, {0, 0, w}, 2e-3);
@@ -267,7 +267,7 @@ TEST(TraceRos, ABadSampleIsMissing) {
             pose_in("world", {{0.1 * i, 0, 0}, i == 7 ? Quat{0, 0, 0, 0} : Quat{i == 8 ? 0.985 : 1, 0, 0, 0}}));
   auto reader = bag.open();
   ASSERT_TRUE(reader);
-  EXPECT_TRUE(has(reader->notes(), "/tool/pose", "1 sample missing: the rotation is 0, 0, 0, 0"));
+  EXPECT_TRUE(has(reader->notes(), "/tool/pose", "a sample is missing: the rotation is 0, 0, 0, 0"));
   const Reading reading = read_all(std::move(reader));
   ASSERT_EQ(reading.frames.size(), 20u);
   expect_near(reading.frames[7].objects[0].pose.position, {0.7, 0, 0});

@@ -23,10 +23,11 @@ class Error(Exception):
     remedy      a sentence on how to fix it; may be empty
     advice      how a receiver reacts: "none", "drop", "request_key" or "close"
     subject     file or object that it concerns; may be empty
+    words       what is wrong in this particular case: file, topic or row, time, value, remedy; may be empty
     """
 
-    def __init__(self, error: Any, subject: str = "") -> None:
-        self._of = (error.status, error.rule, error.bit_offset, subject)
+    def __init__(self, error: Any, subject: str = "", words: str = "") -> None:
+        self._of = (error.status, error.rule, error.bit_offset, subject, words)
         library = core()
         told = ctypes.byref(error)
         self.name: str = library.tactus_status_name(error.status).decode()
@@ -35,20 +36,20 @@ class Error(Exception):
         self.bit_offset: int = error.bit_offset
         self.remedy: str = library.tactus_error_remedy(told).decode()
         self.advice: str = ("none", "drop", "request_key", "close")[library.tactus_error_advice(told)]
-        self.subject = subject
+        self.subject, self.words = subject, words
         place = f" at byte {self.bit_offset // 8}" if self.bit_offset else ""
         text = library.tactus_error_text(told).decode()
         subject = f"{subject}: " if subject else ""
-        super().__init__(f"{subject}{text}{place} ({self.name}, {self.rule}). {self.remedy}".rstrip())
+        super().__init__(words or f"{subject}{text}{place} ({self.name}, {self.rule}). {self.remedy}".rstrip())
 
     def __reduce__(self) -> Any:  # workers of multiprocessing send it to their parent
         return _error_of, self._of
 
 
-def _error_of(status: int, rule: bytes | None, bit_offset: int, subject: str) -> Error:
+def _error_of(status: int, rule: bytes | None, bit_offset: int, subject: str, words: str) -> Error:
     error = _abi.tactus_error()
     error.status, error.rule, error.bit_offset = status, rule, bit_offset
-    return Error(error, subject)
+    return Error(error, subject, words)
 
 
 def refusal(rule: str, subject: str, name: str = "TACTUS_INVALID_ARGUMENT") -> Error:
@@ -129,15 +130,16 @@ def traces() -> _Library:
     return _loaded["traces"]
 
 
-def call(function: Any, *arguments: Any, subject: str = "") -> bool:
-    """Call a function whose last argument is the error. True: done; False: nothing is there.   raises  Error"""
+def call(function: Any, *arguments: Any, subject: str = "", words: Any = None) -> bool:
+    """Call a function whose last argument is the error. True: done; False: nothing is there.   raises  Error
+    words: the function that tells what it said"""
     error = _abi.tactus_error()
     status = function(*arguments, error)
     if status == OK:
         return True
     if status == NOTHING:
         return False
-    raise Error(error, subject)
+    raise Error(error, subject, words().decode() if words else "")
 
 
 def read_bytes(function: Any, *arguments: Any, subject: str = "") -> bytes:

@@ -164,11 +164,13 @@ def write_arrays(time: Any, poses: Any, wrenches: Any, devices: Any, contacts: A
         for name, value in objects.items():
             arrays.add(traces().tactus_arrays_object, name, *_pose(value, f"poses[{name!r}]", order, rows), None, None)
         for name in [*hands, *(name for name in forces if name not in hands)]:
-            device = None if name not in hands else _vectors(hands[name], f"devices[{name!r}]", _POSITION, (3,), rows)
+            device, turned = (None, None) if name not in hands else _pose(hands[name], f"devices[{name!r}]", order, rows)
             force = None if name not in forces else _vectors(forces[name], f"wrenches[{name!r}]", _FORCE, (3, 6), rows)
             if name in forces and not _is_frame(forces[name]) and np.shape(forces[name])[1] == 6:
                 told.append(f"{name}: torques are left out")
             arrays.add(traces().tactus_arrays_user, name, device, force)
+            if turned is not None:
+                arrays.add(traces().tactus_arrays_device_rotation, name, turned)
         for name, contact in _by_name(contacts, "user").items():
             touched, stiffness, kind = _touched(contact, f"contacts[{name!r}]")
             call(traces().tactus_arrays_contact, arrays.handle, text_of(name.encode()), text_of(touched.encode()), stiffness, kind,

@@ -61,10 +61,12 @@ class TraceReader(Handle):
         super().__init__()
         if isinstance(file, (bytes, bytearray, memoryview)):
             self._subject, self._bytes = "", bytes_of(file)  # the trace reads them in place
-            call(traces().tactus_trace_open_memory, self._bytes, len(self._bytes), ctypes.byref(self._handle))
+            call(traces().tactus_trace_open_memory, self._bytes, len(self._bytes), ctypes.byref(self._handle),
+                 words=traces().tactus_trace_error_words)
         else:
             self._subject = os.fspath(file)
-            call(traces().tactus_trace_open, text_of(os.fsencode(file)), ctypes.byref(self._handle), subject=self._subject)
+            call(traces().tactus_trace_open, text_of(os.fsencode(file)), ctypes.byref(self._handle), subject=self._subject,
+                 words=traces().tactus_trace_error_words)
         info = answer(_abi.tactus_trace_info)
         call(traces().tactus_trace_get, self.handle, info)
         self.tick_rate: int = info.tick_rate  #: ticks per second
@@ -117,7 +119,7 @@ class TraceReader(Handle):
         while True:
             objects, users = np.empty((len(self.objects), 13)), np.empty(len(self.users), USER)
             if not call(next_frame, self.handle, ctypes.byref(tick), objects.ctypes.data, len(objects), users.ctypes.data, len(users),
-                        subject=self._subject):
+                        subject=self._subject, words=traces().tactus_trace_error_words):
                 return
             yield Frame(tick.value, objects, users, [self._shape(i) for i in range(len(self.meshes))])
 
@@ -174,7 +176,7 @@ class Trace:
         poses      name -> (T, 3) positions [m], (T, 7) positions and quaternions, a tuple of (T, 3) and (T, 4), or a data frame with columns
                    x, y, z and qw, qx, qy, qz; without a name "object". World frame, right-handed
         wrenches   name -> (T, 3) force on the user [N], (T, 6) with the torque, which is left out, or columns fx, fy, fz; else "user"
-        devices    name -> (T, 3) places of the devices [m], or columns x, y, z
+        devices    name -> places of the devices [m], with or without rotations, as poses
         contacts   user -> (object, stiffness [N/m]) or (object, stiffness, "plane" or "spring"): what the user touched. It gives the
                    recorded forces a bound: each stretches a spring between the device, or the object's origin if the user has none, and the
                    object; what lies along the force counts, or ("spring", as of a grip) the whole vector
