@@ -266,12 +266,6 @@ tl::expected<std::string, Failure> read_file(const std::string& path, std::uint6
   }
 }
 
-tl::expected<std::string, Failure> read_regular_file(const std::string& path) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return refuse(shown_path(path) + ": this is no regular file", "Remove it.");
-  return read_file(path);
-}
-
 Outcome check_standard_output() {
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return {};

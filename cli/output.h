@@ -118,9 +118,6 @@ inline constexpr std::uint64_t kMostRead = 512U << 20;  ///< [bytes] of a file t
 /// All bytes of a file, "-" is standard input.   err  it cannot be read; it is a folder; it has more than `most` bytes
 tl::expected<std::string, Failure> read_file(const std::string& path, std::uint64_t most = kMostRead);
 
-/// The same of a file alone: a pipe or a device has no end.
-tl::expected<std::string, Failure> read_regular_file(const std::string& path);
-
 /// What was printed has reached its reader or its file.
 Outcome check_standard_output();
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <tactus/trace/frame.h>
 #include "cli/command.h"
 
 namespace tactus::cli {

@@ -5,7 +5,9 @@
 #include <set>
 #include <string>
 
-#include <tactus/trace/trace_file.h>
+namespace tactus {
+struct TraceInfo;
+}
 
 namespace tactus::cli {
 

@@ -11,6 +11,18 @@
 
 namespace tactus::cli {
 
+std::string percent(double share) {
+  if (share == 0 || share == 1) return fmt::format("{:.0f} %", 100 * share);
+  return fmt::format("{:.{}f} %", 100 * share, share < 0.0995 || share > 0.995 ? 2 : 1);
+}
+
+std::string significant(double value, int digits) { return value == 0 ? "0" : fmt::format("{:.{}g}", value, digits); }
+
+std::string duration(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.2f} us", 1e6 * seconds);
+  return seconds < 1 ? fmt::format("{:.1f} ms", 1e3 * seconds) : fmt::format("{:.2f} s", seconds);
+}
+
 std::size_t display_width(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));

@@ -2,7 +2,6 @@
 /// Tables of text, and figures as they stand in them.
 #pragma once
 
-#include <fmt/format.h>
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -21,16 +20,9 @@ inline constexpr std::array<const char*, 3> kLayers{"haptic", "visual", "all"}; 
 
 inline constexpr std::uint64_t kUdpHeader = 28;  // [bytes] IPv4 20, UDP 8
 
-inline std::string percent(double share) {
-  if (share == 0 || share == 1) return fmt::format("{:.0f} %", 100 * share);
-  return fmt::format("{:.{}f} %", 100 * share, share < 0.0995 || share > 0.995 ? 2 : 1);
-}
-inline std::string significant(double value, int digits = 3) { return value == 0 ? "0" : fmt::format("{:.{}g}", value, digits); }
-
-inline std::string duration(double seconds) {
-  if (seconds < 1e-3) return fmt::format("{:.2f} us", 1e6 * seconds);
-  return seconds < 1 ? fmt::format("{:.1f} ms", 1e3 * seconds) : fmt::format("{:.2f} s", seconds);
-}
+std::string percent(double share);  ///< "4.2 %", "0 %"
+std::string significant(double value, int digits = 3);
+std::string duration(double seconds);  ///< "12.00 us", "3.1 ms", "2.50 s"
 
 inline constexpr std::array<const char*, 6> kDofNames{"x", "y", "z", "rx", "ry", "rz"};
 /// Along and about which axes an object can move.

@@ -27,7 +27,6 @@ class TextDecoder {
   void add(std::string_view bytes, std::string& text);
   /// The input has ended: append what was kept back.   out  what ended is no whole character (of UTF-16): false
   bool end(std::string& text);
-  bool is_utf16() const noexcept { return encoding_ == Encoding::little || encoding_ == Encoding::big; }
 
  private:
   enum class Encoding : std::uint8_t { unknown, bytes, little, big };

@@ -43,7 +43,6 @@ class VertexCoder {
   }
   void use_weights(std::uint32_t set) noexcept { set_ = set; }
   std::span<const std::uint32_t> area() const noexcept { return area_; }  ///< of interest, from the touched triangle outwards
-  std::uint32_t bound_of(std::uint32_t vertex) const noexcept { return bound_[inside_[vertex]]; }
   bool is_inside(std::uint32_t vertex) const noexcept { return inside_[vertex] != 0; }
   /// Whether the packet codes this vertex; the others keep the temporal prediction.
   bool codes(std::uint32_t vertex) const noexcept { return codes_[inside_[vertex]]; }

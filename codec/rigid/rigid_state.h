@@ -26,7 +26,6 @@ enum class Predictor : std::uint8_t {
   slide = 2,      ///< both velocities fall to 0 together, the velocity by a constant deceleration
   driven = 3,     ///< the device of the client pushes or holds it; for who does not know the device, constant velocities
 };
-inline constexpr std::size_t kPredictors = 4;
 
 /// Where the device of a client touches an object, in the object's frame. spec/40-rigid.md section 4.1
 struct DrivenContact {

@@ -37,7 +37,6 @@ class CsvRows {
   /// Of a long table: names in the order in which they came.
   const std::vector<std::string>& objects() const noexcept { return objects_; }
   std::int64_t first_date() const noexcept { return first_date_; }  ///< [ns] since 1970; 0: times are no dates
-  bool time_is_told() const noexcept { return plan_.time_is_told; }
 
  private:
   enum class Read : std::uint8_t { value, missing, wrong };

@@ -78,7 +78,6 @@ class RosSamples {
   /// Topics told of by several channels.
   const std::map<std::string, int>& channels() const noexcept { return channels_of_topic_; }
   /// Two types on one topic, or the like: topic, then what.
-  std::uint64_t spent() const noexcept { return spent_; }
 
  private:
   struct ChannelUse {

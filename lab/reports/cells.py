@@ -24,7 +24,7 @@ from common.arguments import Refusal
 from sweep.formula import Formula, NotAFormula, leading_number
 
 DEFINED = "defined:"
-NOT_HERE = ("machine:", "quoted:", "recording:", "by hand:")
+NOT_HERE = ("machine:", "quoted:", "recording:")
 CELL = re.compile(r"(?P<join>[a-z]*)\{(?P<what>[^{}]*)\}")
 OVER = re.compile(r"(?P<join>[a-z]+) over (?P<columns>[\w ]+):")
 EITHER = " or "

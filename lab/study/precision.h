@@ -72,7 +72,6 @@ struct PrecisionPoint {
   std::string taken;   ///< if the method was chosen: which one
   std::string remark;  ///< why it stopped and there are no errors; "probe: ..." when only the force is missing
 
-  double seconds_per_step() const noexcept { return seconds_per_second * step; }
 };
 
 /// How often a run is timed after a warm-up. If that takes longer than `longest_repeated` [s], it is the only run timed.

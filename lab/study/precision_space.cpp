@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <tactus/base/rule.h>
 #include <tactus/sim/fem/cholesky.h>
@@ -13,7 +12,6 @@
 namespace tactus::sim::study {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNear = 1e-9;  // [m] coordinates of grid vertices carry rounding only
 
 /// The load spread evenly over the surface triangles whose corners all lie in the region: the consistent load of constant pressure.
@@ -77,10 +75,6 @@ tl::expected<FemModel, Diagnostic> make_model(const PrecisionScene& scene) {
   return FemModel::create(scene.mesh, std::move(options));
 }
 
-Eigen::VectorXd as_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
 }  // namespace
 
 std::optional<PrecisionScene> space_scene(std::string_view name, int refinement, double poisson) {
@@ -90,15 +84,6 @@ std::optional<PrecisionScene> space_scene(std::string_view name, int refinement,
   if (name == "cantilever") scene = cantilever(r, poisson);
   if (scene) scene->name = name;
   return scene;
-}
-
-Extrapolation extrapolate(double coarse, double middle, double fine) {
-  const double first = middle - coarse, second = fine - middle;
-  Extrapolation out;
-  out.order = std::log2(first / second);
-  out.limit = fine + second * second / (first - second);
-  out.uncertainty = std::abs(out.limit - (fine + second / 3));
-  return out;
 }
 
 double timoshenko_deflection(double length, double width, double height, const Material& material) {
@@ -165,24 +150,6 @@ tl::expected<SpacePoint, Diagnostic> measure_space(std::string_view name, const 
   out.step = scene.step(steps);
   out.seconds_per_second = run.step_seconds / scene.duration;
   for (const Eigen::VectorXd& u : run.u) out.deflection.push_back(scene.patch.deflection(u));
-  return out;
-}
-
-SpaceErrors space_errors(const std::vector<SpacePoint>& points) {
-  const auto quadratic = [&](int refinement) {
-    const auto point =
-        std::find_if(points.begin(), points.end(), [&](const SpacePoint& p) { return p.refinement == refinement; });
-    return point->quadratic_deflection;
-  };
-  SpaceErrors out;
-  out.limit = extrapolate(quadratic(1), quadratic(2), quadratic(4));
-  const Eigen::VectorXd finest = as_vector(points.back().deflection);
-  for (const SpacePoint& p : points) {
-    const bool is_finest = &p == &points.back(), in_time = !p.deflection.empty() && finest.size() > 0 && !is_finest;
-    out.at_rest_error.push_back(std::abs(p.at_rest.deflection / out.limit.limit - 1));
-    out.quadratic_error.push_back(p.quadratic_deflection > 0 ? std::abs(p.quadratic_deflection / out.limit.limit - 1) : kNaN);
-    out.transient_error.push_back(in_time ? (as_vector(p.deflection) - finest).norm() / finest.norm() : kNaN);
-  }
   return out;
 }
 

@@ -17,13 +17,6 @@ namespace tactus::sim::study {
 /// The object at refinement r with Poisson's ratio nu; nothing for an unknown name ("membrane" or "cantilever").
 std::optional<PrecisionScene> space_scene(std::string_view name, int refinement, double poisson);
 
-/// A value that converges, from refinements r, 2r and 4r: limit (Aitken), observed order, and how far the limit moves when the
-/// order is taken as 2 instead.
-struct Extrapolation {
-  double limit = 0, order = 0, uncertainty = 0;
-};
-Extrapolation extrapolate(double coarse, double middle, double fine);
-
 /// Tip deflection of a beam per newton: F L^3 / (3 E I) + F L / (5/6 G A).
 double timoshenko_deflection(double length, double width, double height, const Material& material);
 
@@ -55,15 +48,5 @@ struct SpacePoint {
 };
 /// In time by velocity Verlet, whose time error is far below the space error (precision.h).
 tl::expected<SpacePoint, Diagnostic> measure_space(std::string_view name, const SpaceJob& job);
-
-/// The meshes of one material against their common limit. NaN: not computed.
-struct SpaceErrors {
-  Extrapolation limit;                  ///< [m/N]
-  std::vector<double> at_rest_error;    ///< relative, per point
-  std::vector<double> quadratic_error;  ///< the same of quadratic elements
-  std::vector<double> transient_error;  ///< relative 2-norm over the sample times of the difference to the finest mesh
-};
-/// pre  refinements 1, 2 and 4 come with quadratic elements
-SpaceErrors space_errors(const std::vector<SpacePoint>& points);
 
 }  // namespace tactus::sim::study

@@ -207,20 +207,6 @@ void AabbTree::along(const Vec3& from, const Vec3& way, double radius, Test&& te
   }
 }
 
-std::optional<SurfaceHit> AabbTree::first_hit(const Vec3& from, const Vec3& to, std::span<const Vec3> vertices) const noexcept {
-  std::optional<SurfaceHit> first;
-  const Vec3 way = to - from;
-  along(from, way, 0, [&](const Leaf& leaf) {
-    const auto hit = segment_hits_triangle(from, way, corners(leaf, vertices));
-    if (hit) {
-      const SurfaceHit found{hit->t, hit->t, named(leaf, hit->weights, from + hit->t * way, 0)};
-      if (earlier(found, first)) first = found;
-    }
-    return first ? first->t : 1.0;
-  });
-  return first;
-}
-
 std::optional<SurfaceHit> AabbTree::sweep(const Sweep& sphere, std::span<const Vec3> vertices,
                                           std::span<const std::uint32_t> left_out) const noexcept {
   std::optional<SurfaceHit> first;

@@ -68,9 +68,7 @@ class AabbTree {
   /// Closest point of the mesh that is no further than `within` [m].   time O(log n) near the surface, no allocation
   std::optional<SurfacePoint> closest(const Vec3& point, std::span<const Vec3> vertices,
                                       double within = std::numeric_limits<double>::infinity()) const noexcept;
-  /// First point of a segment that lies on the mesh.   time O(log n + triangles near the segment), no allocation
-  std::optional<SurfaceHit> first_hit(const Vec3& from, const Vec3& to, std::span<const Vec3> vertices) const noexcept;
-  /// First contact of a moving sphere with any triangle but those left out.   time as first_hit, no allocation
+  /// First contact of a moving sphere with any triangle but those left out.   time O(log n + triangles near the way), no allocation
   std::optional<SurfaceHit> sweep(const Sweep& sphere, std::span<const Vec3> vertices,
                                   std::span<const std::uint32_t> left_out = {}) const noexcept;
   /// The same with one triangle of the tree.

@@ -85,48 +85,6 @@ inline TrianglePoint closest_on_triangle(const Vec3& p, const Corners& v) noexce
   return closest_on_triangle(p, TriangleShape(v));
 }
 
-/// Where a segment first meets a triangle.
-struct TriangleHit {
-  double t = 0;                     ///< share of the segment, 0..1
-  std::array<double, 3> weights{};  ///< of the corners
-};
-
-namespace detail {
-
-/// First point inside of a segment that lies in the triangle's plane.
-inline std::optional<TriangleHit> coplanar_hit(const Vec3& from, const Vec3& way, const Corners& v, const Vec3& normal) noexcept {
-  double first = 0, last = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 inward = cross(normal, v[(k + 1) % 3] - v[k]);
-    const double start = dot(inward, from - v[k]), rate = dot(inward, way);
-    if (rate > 0) first = std::fmax(first, -start / rate);
-    else if (rate < 0) last = std::fmin(last, -start / rate);
-    else if (start < 0) return std::nullopt;
-  }
-  if (!(first <= last)) return std::nullopt;
-  return TriangleHit{first, closest_on_triangle(from + first * way, v).weights};
-}
-
-}  // namespace detail
-
-/// Edges and corners belong to the triangle. Two triangles with a common edge compute the same bits for it, with opposite sign, so
-/// that no segment slips through between them. A triangle without area is never met; its neighbours are.
-inline std::optional<TriangleHit> segment_hits_triangle(const Vec3& from, const Vec3& way, const Corners& v) noexcept {
-  const Vec3 a = v[0] - from, b = v[1] - from, c = v[2] - from;
-  const Vec3 normal = cross(b - a, c - a);
-  const double start = -dot(normal, a), rate = dot(normal, way), end = start + rate;
-  if ((start > 0 && end > 0) || (start < 0 && end < 0)) return std::nullopt;
-  if (start == 0 && end == 0) {
-    if (dot(normal, normal) == 0) return std::nullopt;
-    return detail::coplanar_hit(from, way, v, normal);
-  }
-  const double wa = dot(cross(b, c), way), wb = dot(cross(c, a), way), wc = dot(cross(a, b), way);
-  if (!((wa >= 0 && wb >= 0 && wc >= 0) || (wa <= 0 && wb <= 0 && wc <= 0))) return std::nullopt;
-  const double sum = wa + wb + wc;
-  if (sum == 0) return std::nullopt;
-  return TriangleHit{std::fmin(std::fmax(start / (start - end), 0.0), 1.0), {wa / sum, wb / sum, wc / sum}};
-}
-
 /// A moving sphere.
 struct Sweep {
   Vec3 from, way;     ///< [m] start of the centre, and its displacement

@@ -201,17 +201,6 @@ void write_msh(std::ostream& out, const TetMesh& mesh) {
   out << text << "$EndElements\n";
 }
 
-void write_poly(std::ostream& out, const TriMesh& mesh) {
-  std::string text;
-  append_vertices(text, mesh.vertices);
-  append_line(text, mesh.triangles.size(), 0);
-  for (const auto& [a, b, c] : mesh.triangles) {
-    append_line(text, 1);  // polygons in this facet
-    append_line(text, 3, a, b, c);
-  }
-  out << text << "0\n0\n";  // holes, regions
-}
-
 void write_smesh(std::ostream& out, const TriMesh& mesh) {
   std::string text;
   append_vertices(text, mesh.vertices);

@@ -49,8 +49,7 @@ tl::expected<TetFile, Diagnostic> parse_msh(std::string_view bytes);
 void write_node(std::ostream& out, const TetMesh& mesh);
 void write_ele(std::ostream& out, const TetMesh& mesh);
 void write_msh(std::ostream& out, const TetMesh& mesh);  ///< Gmsh 4.1 ASCII, one volume
-/// A closed surface for TetGen to fill; .poly lets facets have holes, .smesh is half as long.
-void write_poly(std::ostream& out, const TriMesh& mesh);
+/// A closed surface for TetGen to fill.
 void write_smesh(std::ostream& out, const TriMesh& mesh);
 
 }  // namespace tactus::sim

@@ -95,45 +95,6 @@ tl::expected<void, Diagnostic> check_use(const TetMesh& mesh) {
   return {};
 }
 
-using Edge = std::array<std::uint32_t, 2>;
-
-Edge edge(std::uint32_t a, std::uint32_t b) noexcept { return {std::min(a, b), std::max(a, b)}; }
-
-/// Every edge once, ascending.
-std::vector<Edge> edges(const TetMesh& mesh) {
-  std::vector<Edge> out;
-  out.reserve(6 * mesh.tets.size());
-  for (const auto& [a, b, c, d] : mesh.tets)
-    for (const Edge& e : {edge(a, b), edge(a, c), edge(a, d), edge(b, c), edge(b, d), edge(c, d)}) out.push_back(e);
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
-TetMesh halved(const TetMesh& mesh) {
-  const std::vector<Edge> all = edges(mesh);
-  TetMesh out{mesh.vertices, {}};
-  for (const Edge& e : all) out.vertices.push_back(0.5 * (mesh.vertices[e[0]] + mesh.vertices[e[1]]));
-  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-    const auto found = std::lower_bound(all.begin(), all.end(), edge(a, b));
-    return static_cast<std::uint32_t>(mesh.vertices.size() + static_cast<std::size_t>(found - all.begin()));
-  };
-  const auto length = [&](std::uint32_t a, std::uint32_t b) { return norm(out.vertices[a] - out.vertices[b]); };
-  out.tets.reserve(8 * mesh.tets.size());
-  for (const auto& [a, b, c, d] : mesh.tets) {
-    const std::uint32_t ab = middle(a, b), ac = middle(a, c), ad = middle(a, d);
-    const std::uint32_t bc = middle(b, c), bd = middle(b, d), cd = middle(c, d);
-    out.tets.insert(out.tets.end(), {{a, ab, ac, ad}, {ab, b, bc, bd}, {ac, bc, c, cd}, {ad, bd, cd, d}});
-    // The inner octahedron: its three diagonals, each followed by the ring around it, counter-clockwise seen from its end.
-    const std::array<std::array<std::uint32_t, 6>, 3> cuts{
-        {{ab, cd, ac, ad, bd, bc}, {ac, bd, ad, ab, bc, cd}, {ad, bc, ab, ac, cd, bd}}};
-    const auto& cut = *std::min_element(cuts.begin(), cuts.end(),
-                                        [&](const auto& p, const auto& q) { return length(p[0], p[1]) < length(q[0], q[1]); });
-    for (std::size_t k = 0; k < 4; ++k) out.tets.push_back({cut[0], cut[1], cut[2 + k], cut[2 + (k + 1) % 4]});
-  }
-  return out;
-}
-
 }  // namespace
 
 double volume(const TetMesh& mesh, std::size_t tet) noexcept {
@@ -216,12 +177,6 @@ TetMesh make_slab(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double c
     }
   }
   return mesh;
-}
-
-TetMesh refined(const TetMesh& mesh, unsigned times) {
-  TetMesh out = mesh;
-  for (unsigned i = 0; i < times; ++i) out = halved(out);
-  return out;
 }
 
 // ==== tet quality ====

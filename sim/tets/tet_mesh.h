@@ -58,11 +58,6 @@ TetSurface surface(const TetMesh& mesh);
 /// pre  nx, ny, nz >= 1; cell > 0
 TetMesh make_slab(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double cell);
 
-/// A tetrahedral mesh with every edge halved `times` times, for measuring the space error. Vertices keep their numbers, new
-/// ones follow; tetrahedron t becomes 8 t .. 8 t + 7, the four inner ones around the shortest diagonal.
-/// pre  the mesh passed check().   time O(n log n) of the result
-TetMesh refined(const TetMesh& mesh, unsigned times);
-
 // ==== tet quality ====
 // How well shaped tetrahedra are: flat ones make a simulation inaccurate and its highest frequency large.
 

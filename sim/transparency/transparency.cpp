@@ -158,10 +158,6 @@ double client_force(const SteadyPush& push, double client_stiffness, double serv
   return client_stiffness / server_stiffness * (round_trip * server_stiffness * push.velocity + push.server_force());
 }
 
-double excess_force(double velocity, double stiffness, double round_trip) noexcept {
-  return stiffness * round_trip * std::abs(velocity);
-}
-
 std::optional<double> tolerable_delay(const SteadyPush& push, double stiffness, double weber) noexcept {
   if (push.velocity == 0) return std::nullopt;
   return weber * std::abs(push.server_force()) / (std::abs(push.velocity) * stiffness);
@@ -175,11 +171,6 @@ std::optional<double> tolerable_change(const SteadyPush& push, double stiffness,
 double reduced_stiffness(const SteadyPush& push, double stiffness, double round_trip) noexcept {
   const double delayed = std::abs(client_force(push, stiffness, stiffness, round_trip));
   return delayed > 0 ? stiffness * std::abs(push.server_force()) / delayed : stiffness;
-}
-
-double resistive_force(const Vec3& resistance, const Vec3& device_velocity) noexcept {
-  const double speed = norm(device_velocity);
-  return speed > 0 ? -dot(resistance, device_velocity) / speed : 0;
 }
 
 double blending(const Vec3& constraint, const Vec3& face) noexcept {

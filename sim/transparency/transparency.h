@@ -105,8 +105,6 @@ struct SteadyPush {
 
 /// [N] at the client.   in  round_trip [s]   4.13, 4.14
 double client_force(const SteadyPush& push, double client_stiffness, double server_stiffness, double round_trip) noexcept;
-/// [N] by which delay raises the client force, at equal stiffness.   4.17
-double excess_force(double velocity, double stiffness, double round_trip) noexcept;
 /// [s] Round trip at which the client force is a share `weber` above what it should be; none: nothing moves, any delay is hidden.
 /// 4.18 to 4.20
 std::optional<double> tolerable_delay(const SteadyPush& push, double stiffness, double weber) noexcept;
@@ -115,9 +113,6 @@ std::optional<double> tolerable_change(const SteadyPush& push, double stiffness,
 /// [N/m] Client stiffness with which the client force is that of the server.   4.24 to 4.26
 double reduced_stiffness(const SteadyPush& push, double stiffness, double round_trip) noexcept;
 
-/// [N] Forces on the object, b_o v + f_e - f_s, along the motion of the device: < 0 acts against it; 0: the device does not move.
-/// in   resistance [N] b_o v_o + f_e - f_s; device_velocity [m/s]     4.29
-double resistive_force(const Vec3& resistance, const Vec3& device_velocity) noexcept;
 /// 0: the face is parallel to the surface that holds the object, so that it cannot move; 1: it stands upright on it.
 /// in   constraint, face  unit normals     4.27
 double blending(const Vec3& constraint, const Vec3& face) noexcept;

@@ -119,16 +119,6 @@ void closest_point(benchmark::State& state) {
 }
 BENCHMARK(closest_point)->Repetitions(5)->ReportAggregatesOnly();
 
-void first_hit_of_a_segment(benchmark::State& state) {
-  const Body& body = ball();
-  sim::Random random(3);
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        body.tree.first_hit(testing::random_point(random, 0.15), testing::random_point(random, 0.15), body.mesh.vertices));
-  }
-}
-BENCHMARK(first_hit_of_a_segment)->Repetitions(5)->ReportAggregatesOnly();
-
 /// The thesis's membrane: 714 vertices, 1424 triangles.
 void refit_membrane(benchmark::State& state) {
   const TriMesh mesh = surface(sim::make_slab(16, 20, 1, 0.01)).mesh;

@@ -113,21 +113,6 @@ TEST(Triangle, SphereMayLeaveButNotComeCloser) {
   EXPECT_FALSE(sphere_hits_triangle(sweep, v, 1));
 }
 
-TEST(Triangle, SegmentsInThePlaneOfTheTriangle) {
-  const Corners v{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}};
-  const auto hit = [&](const Vec3& from, const Vec3& to) { return segment_hits_triangle(from, to - from, v); };
-  ASSERT_TRUE(hit({-1, 0.25, 0}, {1, 0.25, 0}));
-  EXPECT_DOUBLE_EQ(hit({-1, 0.25, 0}, {1, 0.25, 0})->t, 0.5);
-  ASSERT_TRUE(hit({0.1, 0.1, 0}, {0.2, 0.1, 0}));
-  EXPECT_EQ(hit({0.1, 0.1, 0}, {0.2, 0.1, 0})->t, 0) << "starts inside";
-  EXPECT_TRUE(hit({-1, 0, 0}, {1, 0, 0})) << "along an edge";
-  EXPECT_TRUE(hit({-1, 1, 0}, {1, 1, 0})) << "through a corner";
-  EXPECT_FALSE(hit({-1, 1.01, 0}, {1, 1.01, 0}));
-  EXPECT_FALSE(hit({1, 1, 0}, {2, 2, 0}));
-  EXPECT_FALSE(hit({0.1, 0.1, 0.1}, {0.2, 0.1, 0.1})) << "beside the plane";
-  EXPECT_FALSE(segment_hits_triangle({0, 0, 1}, {0, 0, -2}, {Vec3{}, Vec3{1, 0, 0}, Vec3{2, 0, 0}})) << "no area";
-}
-
 struct AabbTreeTest : ::testing::TestWithParam<int> {
   static TriMesh mesh() {
     switch (GetParam()) {
@@ -174,24 +159,6 @@ TEST_P(AabbTreeTest, ClosestPointIsThatOfBruteForceBitForBit) {
       EXPECT_LT(norm(blend - found->point), 1e-15 * (1 + norm(found->point)));
     }
   }
-}
-
-TEST_P(AabbTreeTest, FirstHitIsThatOfBruteForceBitForBit) {
-  const Body body(mesh());
-  const BruteForce brute(body);
-  const std::vector<Vec3> points = points_around(body.mesh, 0.15, 4);
-  int hits = 0;
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const Vec3 &from = points[i], &to = points[i + 1];
-    const auto found = body.tree.first_hit(from, to, body.mesh.vertices);
-    const auto expected = brute.first([&](const Corners& v) { return segment_hits_triangle(from, to - from, v); });
-    ASSERT_EQ(found.has_value(), expected.has_value());
-    if (!found) continue;
-    ++hits;
-    EXPECT_EQ(found->t, expected->first);
-    EXPECT_EQ(found->at.triangle, expected->second);
-  }
-  EXPECT_GT(hits, 100);
 }
 
 TEST_P(AabbTreeTest, SweepIsThatOfBruteForceBitForBit) {
@@ -261,18 +228,6 @@ TEST_P(AabbTreeTest, RefitAnswersLikeARebuild) {
   }
 }
 
-TEST(AabbTree, NothingSlipsThroughEdgesAndCorners) {
-  const Body body(testing::bumpy_ball(0.1, 4, 0.2, 11));
-  Random random(12);
-  for (int run = 0; run < 5000; ++run) {
-    const Triangle& t = body.mesh.triangles[random.next() % body.mesh.triangles.size()];
-    const double share = run % 2 == 0 ? 0 : random.uniform(0, 1);
-    const Vec3 target = body.mesh.vertices[t[0]] + share * (body.mesh.vertices[t[1]] - body.mesh.vertices[t[0]]);
-    ASSERT_TRUE(body.tree.first_hit(5.0 * target, random_point(random, 1e-4), body.mesh.vertices));
-    ASSERT_TRUE(body.tree.first_hit(random_point(random, 1e-4), 3.0 * target, body.mesh.vertices));
-  }
-}
-
 TEST(AabbTree, FeatureOfTheClosestPoint) {
   const Body body(testing::box({1, 1, 1}));
   const auto feature = [&](const Vec3& p) { return body.tree.closest(p, body.mesh.vertices)->feature(); };
@@ -285,7 +240,6 @@ TEST(AabbTree, PartOfAMeshKeepsItsNumbers) {
   const Body body(testing::ball(0.1, 3));
   AabbTree part;
   EXPECT_FALSE(part.closest({}, body.mesh.vertices)) << "no triangles";
-  EXPECT_FALSE(part.first_hit({}, {1, 0, 0}, body.mesh.vertices));
   const std::vector<std::uint32_t> first{7, 3, 200}, second{9};
   part.build(body.mesh.triangles, first, body.mesh.vertices);
   EXPECT_EQ(part.size(), 3u);

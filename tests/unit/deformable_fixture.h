@@ -200,4 +200,19 @@ class SheetEnds {
   std::array<std::size_t, 3> layers{};  ///< packets by layer
 };
 
+/// Two rigid objects that move, a wall, and deformable ones of profile main in layers, of main with a basis, and of profile thesis.
+inline SharedScene scene_of_every_kind(std::uint32_t squares, std::uint8_t span = 1) {
+  const TriMesh mesh = sheet(squares, squares);
+  return SceneBuilder(60)
+      .rigid("cube")
+      .rigid("wall", {}, Dof::none)
+      .rigid("slider", {}, Dof::x)
+      .deformable("layered", mesh, {.layered = true})
+      .deformable("waves", mesh, {.basis = wave_basis(mesh, squares, 3)})
+      .deformable("thesis", mesh, {.profile = DeformableProfile::thesis, .models_kept = true})
+      .baselines(span)
+      .build()
+      .value();
+}
+
 }  // namespace tactus::testing

@@ -14,21 +14,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint32_t kSquares = 4;
-constexpr std::size_t kSubstreams = 4;  // two cubes; main, in layers; main, with a basis; thesis
-
-SharedScene make_scene(std::uint8_t span = 1) {
-  const TriMesh mesh = testing::sheet(kSquares, kSquares);
-  return SceneBuilder(60)
-      .rigid("cube")
-      .rigid("wall", {}, Dof::none)
-      .rigid("slider", {}, Dof::x)
-      .deformable("layered", mesh, {.layered = true})
-      .deformable("waves", mesh, {.basis = testing::wave_basis(mesh, kSquares, 3)})
-      .deformable("thesis", mesh, {.profile = DeformableProfile::thesis, .models_kept = true})
-      .baselines(span)
-      .build()
-      .value();
-}
+constexpr std::size_t kSubstreams = 4;
 
 struct Sent {
   Bytes bytes;
@@ -70,7 +56,7 @@ std::vector<std::int64_t> image(Receiver& receiver, std::int64_t now) {
 }
 
 TEST(Receiver, TellsWhatItDecoded) {
-  const SharedScene scene = make_scene();
+  const SharedScene scene = testing::scene_of_every_kind(kSquares);
   auto receiver = Receiver::create(scene).value();
   EXPECT_EQ(receiver.scene(), scene);
   std::array<std::size_t, kSubstreams> count{};
@@ -94,7 +80,7 @@ TEST(Receiver, TellsWhatItDecoded) {
 
 /// Every substream in turn gets packets that are damaged, too short, too long, copied, late, and of no baseline.
 TEST(Receiver, AfterAnErrorEverythingIsWhatItWas) {
-  const SharedScene scene = make_scene(2);
+  const SharedScene scene = testing::scene_of_every_kind(kSquares, 2);
   const std::vector<Sent> sent = record(scene, 40, {.key_interval = 0});
   auto receiver = Receiver::create(scene, {.replica = {}, .limits = {.packet_bytes = 4000}}).value();
   std::array<const Sent*, kSubstreams> last{};
@@ -158,7 +144,7 @@ TEST(Receiver, AdviceIsOfTheError) {
 }
 
 TEST(Receiver, ALossInOneSubstreamDoesNotStopTheOthers) {
-  const SharedScene scene = make_scene();
+  const SharedScene scene = testing::scene_of_every_kind(kSquares);
   const std::vector<Sent> sent = record(scene, 30, {.key_interval = 0});
   for (std::size_t lost = 0; lost < kSubstreams; ++lost) {
     auto receiver = Receiver::create(scene).value();
@@ -178,7 +164,7 @@ TEST(Receiver, ALossInOneSubstreamDoesNotStopTheOthers) {
 
 /// Numbers of another sender: baselines are forgotten, and the next key packet is taken, whatever its number and tick.
 TEST(Receiver, AnotherSendersPacketsAreRefusedUpToItsKeyPacket) {
-  const SharedScene scene = make_scene();
+  const SharedScene scene = testing::scene_of_every_kind(kSquares);
   const std::vector<Sent> first = record(scene, 20), second = record(scene, 10, {.first_sequence = 40000});
   auto receiver = Receiver::create(scene).value();
   for (const Sent& packet : first) ASSERT_TRUE(receiver.push(packet.bytes));
@@ -199,7 +185,7 @@ TEST(Receiver, AnotherSendersPacketsAreRefusedUpToItsKeyPacket) {
 
 /// A clock tells that the receiver was away for long: what it holds is too old to be sure of.
 TEST(Receiver, AfterALongSilenceOnlyAKeyPacketIsTaken) {
-  const SharedScene scene = make_scene();
+  const SharedScene scene = testing::scene_of_every_kind(kSquares);
   const std::vector<Sent> sent = record(scene, 30, {.key_interval = 0.25});
   auto receiver = Receiver::create(scene).value();
   constexpr std::int64_t kPause = 1'000'000;
@@ -221,7 +207,7 @@ TEST(Receiver, AfterALongSilenceOnlyAKeyPacketIsTaken) {
 
 /// The place of an error counts from the front of the packet, with the number of the substream.
 TEST(Receiver, PlacesCountTheSubstreamsNumber) {
-  const SharedScene several = make_scene(), alone = testing::scene_of(1);
+  const SharedScene several = testing::scene_of_every_kind(kSquares), alone = testing::scene_of(1);
   auto a = Receiver::create(several).value(), b = Receiver::create(alone).value();
   const Bytes packet{7, 0, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff};
   Bytes numbered = packet;
@@ -261,7 +247,7 @@ TEST(Receiver, ArrivalIsWhenAPacketCame) {
 }
 
 TEST(Receiver, OptionsAndScenesBeyondTheLimitsAreRefused) {
-  const SharedScene scene = make_scene();
+  const SharedScene scene = testing::scene_of_every_kind(kSquares);
   const auto rule = [&](const ReceiverOptions& options) {
     const auto receiver = Receiver::create(scene, options);
     return receiver ? std::string_view() : std::string_view(receiver.error().rule);

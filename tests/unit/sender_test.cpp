@@ -22,22 +22,8 @@ using testing::all;
 using testing::SheetFrame;
 
 constexpr std::uint32_t kSquares = 4;
-constexpr std::size_t kSubstreams = 4;  // two cubes; main, in layers; main, with a basis; thesis
+constexpr std::size_t kSubstreams = 4;
 constexpr double kTick = 1.0 / 60;
-
-SharedScene make_scene(std::uint8_t span = 1) {
-  const TriMesh mesh = testing::sheet(kSquares, kSquares);
-  return SceneBuilder(60)
-      .rigid("cube")
-      .rigid("wall", {}, Dof::none)
-      .rigid("slider", {}, Dof::x)
-      .deformable("layered", mesh, {.layered = true})
-      .deformable("waves", mesh, {.basis = testing::wave_basis(mesh, kSquares, 3)})
-      .deformable("thesis", mesh, {.profile = DeformableProfile::thesis, .models_kept = true})
-      .baselines(span)
-      .build()
-      .value();
-}
 
 /// What truly is at a tick, and can be made wrong.
 struct Frame {
@@ -91,7 +77,7 @@ std::vector<Bytes> bytes_of(std::span<const Packet> packets) {
 }
 
 TEST(Sender, SubstreamsComeInOrderAndWhatIsFeltFirst) {
-  const SharedScene scene = make_scene();
+  const SharedScene scene = testing::scene_of_every_kind(kSquares);
   auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.first_sequence = 65530}}).value();
   World world;
   std::array<std::uint16_t, kSubstreams> next;
@@ -117,7 +103,7 @@ TEST(Sender, SubstreamsComeInOrderAndWhatIsFeltFirst) {
 }
 
 TEST(Sender, SaysNothingOfWhatHasNoNewShape) {
-  auto sender = Sender::create(make_scene()).value();
+  auto sender = Sender::create(testing::scene_of_every_kind(kSquares)).value();
   World world;
   for (int i = 0; i < 20; ++i) world.step();
   Frame frame = world.step();
@@ -139,7 +125,7 @@ TEST(Sender, SaysNothingOfWhatHasNoNewShape) {
 
 /// What a receiver of all packets shows is within the bounds times their factor; a narrower one holds from the next tick on.
 TEST(Sender, WidenedBoundsHoldAndAskForLess) {
-  const SharedScene scene = make_scene();
+  const SharedScene scene = testing::scene_of_every_kind(kSquares);
   const SenderOptions options;
   std::array<std::size_t, 4> bytes{}, steps{1, 4, 8, 1};
   auto sender = Sender::create(scene, options).value();
@@ -184,7 +170,7 @@ TEST(Sender, WidenedBoundsHoldAndAskForLess) {
 }
 
 TEST(Sender, AWideningIsAtLeastOne) {
-  const SharedScene scene = make_scene();
+  const SharedScene scene = testing::scene_of_every_kind(kSquares);
   const auto hashes_with = [&](double factor) {
     auto sender = Sender::create(scene).value();
     sender.set_widening(factor);
@@ -246,7 +232,7 @@ TEST(Sender, NothingChangesAfterAnErrorInAnyObject) {
          f.sheets[0].touch = SurfaceTouch{0, 1, 0};
        }},
   };
-  const SharedScene scene = make_scene(2);
+  const SharedScene scene = testing::scene_of_every_kind(kSquares, 2);
   const SenderOptions options{.triggers = {}, .deformable = {}, .policy = {.key_interval = 0.7}};
   auto sender = Sender::create(scene, options).value(), spared = Sender::create(scene, options).value();
   World world;
@@ -276,7 +262,7 @@ TEST(Sender, NothingChangesAfterAnErrorInAnyObject) {
 
 /// An object that an update cannot reach, found out after everything was read.
 TEST(Sender, NothingChangesWhereAnUpdateCannotReach) {
-  SceneSpec spec = *make_scene();
+  SceneSpec spec = *testing::scene_of_every_kind(kSquares);
   spec.objects[2].initial.position = {-2100000000, 0, 0};
   const SharedScene scene = testing::shared(std::move(spec));
   const SenderOptions options{.triggers = {.visual_position = 2e-6}, .deformable = {}, .policy = {}};
@@ -296,7 +282,9 @@ TEST(Sender, NothingChangesWhereAnUpdateCannotReach) {
 }
 
 TEST(Sender, ARequestIsForEverySubstream) {
-  auto sender = Sender::create(make_scene(), {.triggers = {}, .deformable = {}, .policy = {.key_interval = 0}}).value();
+  auto sender =
+      Sender::create(testing::scene_of_every_kind(kSquares), {.triggers = {}, .deformable = {}, .policy = {.key_interval = 0}})
+          .value();
   World world;
   for (int i = 0; i < 20; ++i) world.step();
   Frame frame = world.step();
@@ -387,7 +375,7 @@ TEST(Sender, AForgottenKeyPacketComesAgain) {
 /// Beside a sender that is not told: of other substreams, of packets that never were, of old ones, of the same one again.
 TEST(Sender, UnknownAndOldAcknowledgementsChangeNothing) {
   for (const Baseline baseline : {Baseline::previous, Baseline::acknowledged}) {
-    const SharedScene scene = make_scene(8);
+    const SharedScene scene = testing::scene_of_every_kind(kSquares, 8);
     const SenderOptions options{
         .triggers = {}, .deformable = {}, .policy = {.key_interval = 0, .first_sequence = 65500, .baseline = baseline}};
     auto told = Sender::create(scene, options).value(), spared = Sender::create(scene, options).value();

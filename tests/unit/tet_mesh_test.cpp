@@ -106,26 +106,6 @@ TEST(TetMesh, TooManyElementsAreRefused) {
   expect_broken(mesh, "R-TET-7", "");
 }
 
-TEST(TetMesh, RefinedKeepsShapeAndNumbers) {
-  for (const TetMesh& mesh : {make_slab(3, 2, 1, 0.1), TetMesh{{{0, 0, 0}, {2, 0, 0}, {0, 3, 1}, {-1, 1, 4}}, {{0, 1, 2, 3}}}}) {
-    std::size_t tets = mesh.tets.size();
-    const double before = total_volume(mesh);
-    for (unsigned times = 0; times <= 2; ++times, tets *= 8) {
-      const TetMesh fine = refined(mesh, times);
-      EXPECT_EQ(fine.tets.size(), tets);
-      ASSERT_TRUE(check(fine)) << to_string(check(fine).error());
-      EXPECT_NEAR(total_volume(fine), before, 1e-12 * before);
-      EXPECT_TRUE(std::equal(mesh.vertices.begin(), mesh.vertices.end(), fine.vertices.begin()));
-      EXPECT_EQ(surface(fine).mesh.triangles.size(), surface(mesh).mesh.triangles.size() << (2 * times));
-    }
-  }
-}
-
-TEST(TetMesh, RefinedSlabHasTheVerticesOfAFinerSlab) {
-  const TetMesh fine = refined(make_slab(3, 2, 1, 1), 1);
-  EXPECT_EQ(fine.vertices.size(), make_slab(6, 4, 2, 0.5).vertices.size());
-}
-
 TEST(TetMesh, TheTableOfRulesNamesItsLimits) {
   using tactus::testing::count;
   tactus::testing::expect_limits("R-TET-7", {count(kMaxMeshVertices) + " vertices", count(kMaxTets) + " tetrahedra"});
