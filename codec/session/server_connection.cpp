@@ -129,8 +129,16 @@ Result<void> ServerConnection::handle(const Part& part, std::uint64_t now) noexc
     if (buttons->tick >= buttons_.tick) buttons_ = *buttons;
   } else if (const auto* hash = std::get_if<HashPart>(&part)) {
     compare(*hash);
+  } else if (const auto* report = std::get_if<ReportPart>(&part)) {
+    take(*report, now);
   }
   return {};
+}
+
+void ServerConnection::take(const ReportPart& said, std::uint64_t now) noexcept {
+  constexpr std::uint64_t kLongest = 2'000;  // [ms]: no copy comes later
+  exchange_->set_playout(1000 * std::min(said.delay, kLongest));
+  if (said.key != 0) exchange_->want_key(now);
 }
 
 /// The client holds the declaration: from the next tick on it gets packets, and may send those of its device.
@@ -139,6 +147,9 @@ Result<void> ServerConnection::go_live(std::uint64_t now) noexcept try {
   if (!next) return {};
   TACTUS_TRY(auto sender, Sender::create(served_.scene, served_.sender));
   exchange_->send_with(std::move(sender));
+  tells_baselines_ = served_.sender.policy.baseline == Baseline::acknowledged;
+  baselines_number_ = 0;
+  if (!tells_baselines_) exchange_->repair();
   congestion_.begin(now);
   if (join_.role == Role::participant) {
     TACTUS_TRY(exchange_->receiver, Receiver::create(served_.device));
@@ -223,7 +234,7 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
       pace_->tell(writer, number);
       pace_at_ = now + exchange_->patience();
     }
-    if (!piece) return pace;
+    if (!piece) return tell_baselines(writer, number) || pace;
     const std::uint64_t index = *exchange_->pieces->next(now, exchange_->patience());
     if (!writer.add(PiecePart{index, exchange_->pieces->bytes(index)})) return false;
     exchange_->pieces->sent(index, number, now);
@@ -232,6 +243,14 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
   });
   if (datagram && !piece) bucket_.take(static_cast<std::int64_t>(8 * (datagram->size() + headers_)));
   return datagram;
+}
+
+/// Each datagram says it until one has arrived.   out  true: it was said
+bool ServerConnection::tell_baselines(DatagramWriter& writer, std::uint64_t number) noexcept {
+  if (baselines_number_ > 0 && exchange_->sent().highest_acknowledged() >= baselines_number_) tells_baselines_ = false;
+  if (!tells_baselines_ || state_ != SessionState::live || !writer.add(BaselinesPart{1})) return false;
+  if (baselines_number_ == 0) baselines_number_ = number;
+  return true;
 }
 
 std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {

@@ -80,7 +80,9 @@ class ServerConnection {
   Result<void> go_live(std::uint64_t now) noexcept;
   void measured(std::int64_t sample, std::uint64_t now) noexcept;
   void compare(const HashPart& said) noexcept;
+  void take(const ReportPart& said, std::uint64_t now) noexcept;
   std::optional<DeviceSample> driving_device(std::uint64_t now) noexcept;
+  bool tell_baselines(DatagramWriter& writer, std::uint64_t number) noexcept;
   bool wants_pace(std::uint64_t now) const noexcept { return pace_ && pace_->waits() && now >= pace_at_; }
   bool wants_piece(std::uint64_t now) const noexcept;
   bool wants_welcome(std::uint64_t now) const noexcept;
@@ -114,6 +116,8 @@ class ServerConnection {
   std::int64_t next_tick_ = 0;      // of submit()
   std::uint64_t pace_at_ = 0;       // [us] when its changes go again
   ButtonsPart buttons_;
+  bool tells_baselines_ = false;        // the client does not know yet that they are the acknowledged ones
+  std::uint64_t baselines_number_ = 0;  // of the first datagram that said so
 };
 
 }  // namespace tactus
