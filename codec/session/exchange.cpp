@@ -17,7 +17,6 @@ namespace {
 constexpr std::uint64_t kSilence = 1'000'000;      // [us] without acknowledgements, at least, before an end sends little
 constexpr std::uint64_t kSeldom = 50'000;          // [us] from datagram to datagram then
 constexpr std::uint64_t kSparing = 1024;           // the wait is this part of the silence at least: numbers last for 17 minutes
-constexpr std::uint32_t kHeavyLoss = 65536 / 20;   // from here on, what is lost goes twice again
 constexpr std::uint32_t kSomeLoss = 65536 / 100;   // above, no acknowledgement waits long
 constexpr std::int64_t kSlowestCopy = 80'000;      // [us] until the other end has the copy of a shape, if it shows later ticks
 constexpr std::uint64_t kLatestShape = 120'000;    // [us] from the first sending of a shape to its copy
@@ -164,11 +163,12 @@ bool Exchange::took(const DecodedPacket& decoded, std::size_t size, Reading& rea
   return true;
 }
 
-/// A packet of rigid objects whose baseline is not there waits for it.
+/// A packet of rigid objects whose baseline is not there waits for it. One that is older than what is decoded is no use any more.
 bool Exchange::hold(std::uint64_t number, std::span<const std::uint8_t> packet, const Error& error, std::uint64_t now) noexcept {
-  if (!held_ || number == 0 || error.rule != std::string_view("R-PKT-4")) return false;
+  if (!held_ || !repaired_ || number == 0 || error.code != Errc::state) return false;
   const auto part = split_substream(*receiver->scene(), packet);
   if (!part || part->substream != 0) return false;
+  if (number <= newest_rigid_) return true;
   held_->remove_if([now](const HeldPackets::Held& held) { return now > held.at + HeldPackets::kLongest; });
   if (!held_->hold(number, packet, now)) return false;
   rigid_heard_ = std::max(rigid_heard_, number);
@@ -178,8 +178,13 @@ bool Exchange::hold(std::uint64_t number, std::span<const std::uint8_t> packet, 
 /// Those whose baseline has come, in the order of their numbers: each may be the baseline of the next.
 void Exchange::take_held(Reading& reading) noexcept {
   held_->remove_if([&](const HeldPackets::Held& held) {
+    if (held.number <= newest_rigid_) return true;  // older than a key packet
     const auto decoded = receiver->push_numbered(held.number, held_->bytes(held));
-    if (!decoded) return decoded.error().rule != std::string_view("R-PKT-4");
+    if (!decoded) {
+      const bool waits = decoded.error().code == Errc::state;
+      if (!waits) ++traffic_.packets_refused;
+      return !waits;
+    }
     reading.heard.tick = std::max(reading.heard.tick.value_or(decoded->tick), decoded->tick);
     took(*decoded, held.size, reading);
     const Heard::Arrival arrival{decoded->tick, held.at};
@@ -224,7 +229,7 @@ void Exchange::give_up(std::uint64_t now) noexcept {
     const Packet& packet = packets_[next_packet_];
     ++traffic_.packets_held;
     wants_key_ = wants_key_ || packet.layer != Layer::all;
-    wants_chain_ = wants_chain_ || packet.substream == 0;
+    wants_chain_ = wants_chain_ || (repairs_ && packet.substream == 0);
     while (sent_.next() && *sent_.next() <= packet.number) skip_number(now);
   }
   packets_ = {};
@@ -331,7 +336,7 @@ void Exchange::lose(std::uint64_t number, std::uint64_t now) noexcept {
   const Slot& slot = slots_[number % slots_.size()];
   if (!resends_ || slot.number != number) return;
   for (std::size_t i = 0; i < slot.count; ++i)
-    resends_->lost(slot.kept[i], number, now, sent_.loss() > kHeavyLoss ? 2 : 1);
+    resends_->lost(slot.kept[i], number, now, 2);
 }
 
 const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
@@ -358,7 +363,7 @@ void Exchange::want_key(std::uint64_t now) noexcept {
 
 void Exchange::begin_chain(std::uint64_t now) noexcept {
   if (resends_ && resends_->is_broken()) wants_chain_ = true;
-  if (!std::exchange(wants_chain_, false) || !repairs_) return;
+  if (!std::exchange(wants_chain_, false)) return;
   sender->request_rigid_key();
   chain_at_ = now;
 }

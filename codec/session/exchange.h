@@ -112,7 +112,7 @@ class Exchange {
   const SentNumbers& sent() const noexcept { return sent_; }
   /// [us] since when the first packet that is held waits; nothing: none is held.
   std::optional<std::uint64_t> waits_since() const noexcept {
-    return held_ && !held_->empty() ? held_->waits_since(newest_rigid_) : std::nullopt;
+    return held_ ? held_->waits_since() : std::nullopt;
   }
   /// The client has asked for a key packet of the rigid objects. It gets one, but not more often than one can be answered.
   void want_key(std::uint64_t now) noexcept;

@@ -267,11 +267,9 @@ bool HeldPackets::hold(std::uint64_t number, std::span<const std::uint8_t> packe
   return true;
 }
 
-std::optional<std::uint64_t> HeldPackets::waits_since(std::uint64_t number) const noexcept {
-  std::optional<std::uint64_t> out;
-  for (const Held& held : held_)
-    if (held.number > number) out = std::min(out.value_or(held.at), held.at);
-  return out;
+std::optional<std::uint64_t> HeldPackets::waits_since() const noexcept {
+  if (held_.empty()) return std::nullopt;
+  return std::ranges::min_element(held_, {}, &Held::at)->at;
 }
 
 }  // namespace tactus

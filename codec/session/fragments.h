@@ -255,8 +255,8 @@ class HeldPackets {
   /// What is held, by number.
   const Held& operator[](std::size_t i) const noexcept { return held_[i]; }
   std::span<const std::uint8_t> bytes(const Held& held) const noexcept { return std::span(bytes_).subspan(held.begin, held.size); }
-  /// [us] when the first of those above this number came; nothing: none is held.
-  std::optional<std::uint64_t> waits_since(std::uint64_t number) const noexcept;
+  /// [us] when the first of them came; nothing: none is held.   time O(held)
+  std::optional<std::uint64_t> waits_since() const noexcept;
   /// Forget those for which `done(held)` is true.
   template <class Done>
   void remove_if(Done&& done) noexcept {

@@ -216,6 +216,8 @@ void SessionClient::Impl::play(const Exchange::Heard& heard, std::uint64_t now) 
   if (heard.is_copy) playout.repaired(*heard.tick);
   if (heard.held)
     for (const auto& arrival : *heard.held) playout.held(arrival.tick, arrival.at, now);
+  Receiver& receiver = *current->exchange.receiver;
+  receiver.replica().keep(playout.delay() * receiver.scene()->tick_rate / 1'000'000 + 1);
   if (heard.round_trip) playout.measured(*heard.round_trip, now);
   if (heard.oldest && *heard.oldest < *heard.tick && !heard.is_copy) playout.late(*heard.oldest, now);
 }

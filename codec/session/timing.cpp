@@ -75,7 +75,7 @@ constexpr std::uint64_t kAdaptEvery = 100'000;                 // [us]
 constexpr std::int64_t kShrink = 100;                          // [us] in this time: 1 ms per second
 constexpr std::int64_t kLong = 150'000;                        // [us]: what is above goes sooner
 constexpr std::uint64_t kUndecided = 1'000'000;  // [us] in which a change is found to be one of the way or of a clock
-constexpr std::int64_t kAnswer = 10'000, kMargin = 10'000;  // [us] in which what came is acknowledged; beyond what is expected
+constexpr std::int64_t kAnswer = 10'000, kMargin = 10'000, kApart = 10'000;  // [us] of an acknowledgement; beyond; between copies
 constexpr std::uint32_t kLossy = 65536 / 333, kLossier = 65536 / 20, kLossiest = 65536 * 3 / 20;  // shares x 2^-16
 constexpr std::uint64_t kOvertaken = 5'000;  // [us] that a packet waits for one that is not lost but late
 constexpr std::uint64_t kSettle = 20'000;        // [us] in which an end that woke up takes what has waited
@@ -142,7 +142,7 @@ std::int64_t PlayoutClock::answer() const noexcept {
 void PlayoutClock::waits(std::optional<std::uint64_t> since, std::uint64_t now) noexcept {
   waits_ = since.has_value();
   if (!waits_ || options_.fixed) return;
-  if (now > *since + std::max<std::uint64_t>(kOvertaken, static_cast<std::uint64_t>(late_ - least_))) delay_ = std::max(delay_, least_ + answer());
+  if (now > *since + std::max<std::uint64_t>(kOvertaken, static_cast<std::uint64_t>(late_ - least_))) delay_ = std::max(delay_, least_ + answer() + kApart);
 }
 
 /// How far behind to show, so that copies come in time: two or three rounds of them where copies get lost, too.
@@ -150,7 +150,7 @@ std::int64_t PlayoutClock::for_repair(std::uint64_t now) const noexcept {
   const std::uint32_t loss = bursts_.loss(now);
   if (loss > kLossiest) return 2 * answer() + 3 * kAnswer;
   if (loss > kLossier) return answer() * 3 / 2 + kAnswer;
-  return loss > kLossy ? answer() : 0;
+  return loss > kLossy ? answer() + kApart : 0;
 }
 
 /// For whether a clock stood still.
