@@ -219,7 +219,7 @@ void Exchange::finish(const Reading& reading) noexcept {
 std::optional<std::uint64_t> Exchange::due() const noexcept {
   std::optional<std::uint64_t> out = received_.due();
   for (const auto& due : {resends_ ? resends_->due() : std::nullopt, tail_due()})
-    if (due) out = std::min(out.value_or(*due), *due);
+    if (due) out = std::min(out.value_or(next_send(*due)), next_send(*due));
   return out;
 }
 
@@ -340,7 +340,7 @@ void Exchange::lose(std::uint64_t number, std::uint64_t now) noexcept {
 }
 
 const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
-  if (!resends_ || !sent_.round_trip()) return nullptr;
+  if (!resends_ || !sent_.round_trip() || !may_send(now)) return nullptr;
   return resends_->next(now, latest());
 }
 
