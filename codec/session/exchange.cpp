@@ -247,9 +247,13 @@ bool Exchange::misses_layers(std::uint64_t now) const noexcept {
   return layered_ > sent_.highest_acknowledged() && now > std::max(progress_at_, key_wanted_at_) + 2 * patience();
 }
 
+/// Nothing was acknowledged for long.
+bool Exchange::is_cut_off(std::uint64_t now) const noexcept {
+  return asked_ > sent_.highest_acknowledged() && now > progress_at_ + std::max(kSilence, 4 * patience());
+}
+
 std::uint64_t Exchange::next_send(std::uint64_t wanted) const noexcept {
-  const bool waits = asked_ > sent_.highest_acknowledged() && wanted > progress_at_ + std::max(kSilence, 4 * patience());
-  if (!waits) return wanted;
+  if (!is_cut_off(wanted)) return wanted;
   const std::uint64_t silent = std::max(sent_at_, progress_at_) - progress_at_;
   return std::max(wanted, sent_at_ + std::max(kSeldom, silent / kSparing));
 }
@@ -363,6 +367,7 @@ void Exchange::want_key(std::uint64_t now) noexcept {
 
 void Exchange::begin_chain(std::uint64_t now) noexcept {
   if (resends_ && resends_->is_broken()) wants_chain_ = true;
+  if (repairs_ && is_cut_off(now)) wants_chain_ = true;  // the first that gets through is then enough
   if (!std::exchange(wants_chain_, false)) return;
   sender->request_rigid_key();
   chain_at_ = now;

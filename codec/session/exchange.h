@@ -175,6 +175,7 @@ class Exchange {
   std::optional<std::uint64_t> tail_due() const noexcept;
   void watch_tail(std::uint64_t now) noexcept;
   void begin_chain(std::uint64_t now) noexcept;
+  bool is_cut_off(std::uint64_t now) const noexcept;
   const Resends::Kept* next_copy(std::uint64_t now) noexcept;
   bool add_copies(std::uint64_t number, std::uint64_t now) noexcept;
   bool add_copy(const Resends::Kept& copy, std::uint64_t number) noexcept;

@@ -22,6 +22,7 @@ constexpr unsigned kLeaves = 3;  // one of them should arrive
 
 ServerConnection::ServerConnection(std::uint16_t client, const SessionServerOptions& options) noexcept
     : client_(client),
+      loss_(options.loss),
       silence_(options.silence),
       headers_(options.headers),
       piece_time_(options.rate == 0 ? 0 : 8'000'000 * (kLargestDatagram + options.headers) / options.rate),
@@ -145,9 +146,11 @@ void ServerConnection::take(const ReportPart& said, std::uint64_t now) noexcept 
 Result<void> ServerConnection::go_live(std::uint64_t now) noexcept try {
   const auto next = next_state(server_transitions(), state_, SessionEvent::completed);
   if (!next) return {};
-  TACTUS_TRY(auto sender, Sender::create(served_.scene, served_.sender));
+  SenderOptions options = served_.sender;
+  if (repairs()) options.policy.baseline = Baseline::repaired;
+  TACTUS_TRY(auto sender, Sender::create(served_.scene, options));
   exchange_->send_with(std::move(sender));
-  tells_baselines_ = served_.sender.policy.baseline == Baseline::acknowledged;
+  tells_baselines_ = !repairs();
   baselines_number_ = 0;
   if (!tells_baselines_) exchange_->repair();
   congestion_.begin(now);

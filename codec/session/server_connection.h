@@ -87,7 +87,12 @@ class ServerConnection {
   bool wants_piece(std::uint64_t now) const noexcept;
   bool wants_welcome(std::uint64_t now) const noexcept;
 
+  bool repairs() const noexcept {
+    return loss_ == LossPolicy::repair || (loss_ == LossPolicy::by_role && join_.role == Role::observer);
+  }
+
   std::uint16_t client_;
+  LossPolicy loss_;
   std::uint64_t silence_, headers_, piece_time_;  // [us], [bytes] around a datagram, [us] of a piece at the rate
   double most_widening_;
   SessionState state_ = SessionState::closed;

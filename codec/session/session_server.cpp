@@ -55,8 +55,7 @@ Result<SessionServer> SessionServer::create(SharedScene scene, const SessionServ
   if (options.clients == 0 || options.rate > 1'000'000'000'000 || !widens) return fail(Errc::invalid_argument, "R-API-4");
   auto impl = std::make_unique<Impl>();
   impl->options = options;
-  impl->options.sender.policy.baseline =
-      options.loss == LossPolicy::repair ? Baseline::repaired : Baseline::acknowledged;
+  impl->options.sender.policy.baseline = Baseline::acknowledged;
   impl->options.sender.policy.key_interval = 0;
   impl->entropy = entropy;
   for (std::uint16_t i = 0; i < options.clients; ++i) impl->connections.push_back(std::make_unique<ServerConnection>(i, options));
