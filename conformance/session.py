@@ -21,7 +21,7 @@ HANDSHAKE, PARTS, PACKET = range(3)                         # forms
 JOIN, WELCOME, REFUSAL, LEAVE = range(4)                    # kinds of handshakes
 ACK, CLOCK, BUTTONS, PIECE, STATE, HASH, FRAGMENT, PACKET_PART = range(1, 9)
 REPORT = PIECE                                              # up
-PACE, BASELINES = BUTTONS, STATE                            # down
+PACE, SEAT, BASELINES = BUTTONS, STATE, HASH                # down
 PREVIOUS, ACKNOWLEDGED = 0, 1                               # policies of baselines
 MOST_HELD, BYTES_HELD = 1024, 1 << 16
 LARGEST_DATAGRAM = 1200
@@ -68,7 +68,7 @@ def part(kind: int, data: bytes) -> bytes:
 
 
 COMES = {UP: (ACK, BUTTONS, REPORT, STATE, HASH, FRAGMENT, PACKET_PART),
-         DOWN: (ACK, CLOCK, PACE, PIECE, BASELINES, FRAGMENT, PACKET_PART)}
+         DOWN: (ACK, CLOCK, PACE, PIECE, SEAT, BASELINES, FRAGMENT, PACKET_PART)}
 
 
 def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
@@ -81,7 +81,10 @@ def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
         require(out[0] < END_OF_TICKS and abs(out[1]) <= FARTHEST_PACE, *SPARE)
     elif kind == BUTTONS:
         out = e.number(4, CUT), e.number(4, CUT)
-    elif kind == STATE:                                     # and baselines
+    elif kind == BASELINES and direction == DOWN:
+        out = (e.number(1, CUT),)
+        require(out[0] <= ACKNOWLEDGED, *SPARE)
+    elif kind == STATE:                                     # and seat
         out = (e.number(1, CUT),)
     elif kind == REPORT and direction == UP:
         out = e.varint(CUT, SPARE), e.number(1, CUT)
@@ -90,7 +93,7 @@ def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
         out = e.number(1, CUT), e.number(2, CUT), e.number(4, CUT)
     else:
         out = tuple(e.varint(CUT, SPARE) for _ in range(4 if kind == FRAGMENT else 1)) + (e.take(e.left(), CUT),)
-    require(e.left() == 0 and (kind != STATE or out[0] <= 1) and (kind != CLOCK or out[0] < END_OF_TIME), *SPARE)
+    require(e.left() == 0 and (kind != STATE or direction == DOWN or out[0] <= 1) and (kind != CLOCK or out[0] < END_OF_TIME), *SPARE)
     return out
 
 
@@ -157,6 +160,7 @@ class Epoch:
         self.untold = 0                                     # accepted since the last acknowledgement
         self.next, self.acknowledged = 1, 0                 # own numbers
         self.sent_at: dict[int, int] = {}
+        self.asked, self.progress_at = 0, 0                 # own number; when one was acknowledged, or the first asked
         self.round_trip: Optional[int] = None
         self.fragments: dict[tuple, dict] = {}
         self.hash: Optional[bytes] = None
@@ -192,7 +196,7 @@ class Epoch:
             back = (self.next - 1 - newest) % (1 << 16)
             require(back < 4096 and back < self.next - 1, "invalid", "R-SES-6")
             if self.next - 1 - back > self.acknowledged:
-                self.acknowledged = self.next - 1 - back
+                self.acknowledged, self.progress_at = self.next - 1 - back, now
                 if held != NO_TIMING:
                     self.round_trip = max(0, now - self.sent_at[self.acknowledged] - 16 * held)
             self.take_acknowledged(newest, elements[2])
@@ -333,10 +337,17 @@ class Epoch:
         self.ack_due, self.untold = None, 0
         return part(ACK, struct.pack("<HH", newest % (1 << 16), held) + varint(missing))
 
+    def unanswered(self) -> Optional[int]:
+        """Since when an answer is missing."""
+        return self.progress_at if self.asked > self.acknowledged else None
+
     def write(self, now: int, parts: list[bytes], packet: bytes = b"") -> Optional[bytes]:
         """A numbered datagram of these parts and a packet of its own number, with an acknowledgement if there is news."""
         if self.next - 4096 > self.acknowledged:
             return None
+        if packet or any(p[0] != HASH for p in parts):      # it waits for an answer
+            self.progress_at = self.progress_at if self.unanswered() is not None else now
+            self.asked = self.next
         if self.ack_due is not None:
             parts = [self.acknowledgement(now)] + parts
         if packet and parts:
@@ -352,12 +363,14 @@ class Epoch:
 class Client:
     """State is closed, joining, receiving or live. `device(number)` gives the packet of the device for a datagram of that number."""
 
-    def __init__(self, nonce: int, device: Optional[Callable[[int], bytes]] = None):
+    def __init__(self, nonce: int, device: Optional[Callable[[int], bytes]] = None, token: int = 0):
         self.nonce, self.device = nonce, device
         self.state, self.reason = "joining", 0
         self.leaving = b""
         self.epoch: Optional[Epoch] = None
+        self.token, self.seat = token, 0
         self.retry_at, self.retry = 0, 250 * MS
+        self.rejoins = False                                # in this silence
         self.sign_at = self.device_at = 0
         self.first_live: Optional[int] = None               # number of the first datagram that said so
 
@@ -369,6 +382,7 @@ class Client:
         require(is_of_epoch(datagram, 0 if before else self.epoch.epoch), "checksum", "R-SES-1")
         if form in (PARTS, PACKET):
             self.epoch.take(now, datagram)
+            self.rejoins = self.rejoins and self.epoch.unanswered() is not None
             self.begin()
             return
         require(form == HANDSHAKE and value in (WELCOME, REFUSAL, LEAVE), "invalid", "R-SES-2")
@@ -383,13 +397,15 @@ class Client:
 
     def welcomed(self, e: Cursor) -> None:
         nonce, serial, epoch, client = e.number(8, CUT), e.varint(CUT, SPARE), e.number(8, CUT), e.number(2, CUT)
-        size, digest, start = e.varint(CUT, SPARE), e.number(8, CUT), e.varint(CUT, SPARE)
+        size, digest, start, _ = e.varint(CUT, SPARE), e.number(8, CUT), e.varint(CUT, SPARE), e.number(8, CUT)
         require(start < END_OF_TIME and e.left() == 0, *SPARE)
-        again = self.state != "joining" and self.epoch and serial <= self.epoch.serial
+        anew = self.rejoins and serial == 0 and epoch != self.token
+        again = self.state != "joining" and self.epoch and serial <= self.epoch.serial and not anew
         if nonce != self.nonce or self.state == "closed" or again:
             return
         self.epoch = Epoch(epoch, client, serial, size, digest, start)
-        self.state, self.sign_at, self.first_live = "receiving", 0, None
+        self.state, self.sign_at, self.first_live, self.rejoins = "receiving", 0, None, False
+        self.token = epoch if serial == 0 else self.token
         if size > HEADER_LIMIT:
             self.leave(TOO_LARGE)
 
@@ -411,9 +427,11 @@ class Client:
         if self.leaving:
             yield self.leaving
         self.leaving = b""
-        if self.state == "joining" and now >= self.retry_at:
+        if now >= self.join_at():
+            if self.state != "joining" and not self.rejoins:
+                self.rejoins, self.retry = True, 250 * MS
             self.retry_at, self.retry = now + self.retry, min(2 * self.retry, 2000 * MS)
-            body = head(HANDSHAKE, JOIN) + b"TCTS" + struct.pack("<BBQ", 1, 1 if self.device else 0, self.nonce)
+            body = head(HANDSHAKE, JOIN) + b"TCTS" + struct.pack("<BBQQB", 1, 1 if self.device else 0, self.nonce, self.token, self.seat)
             yield sealed((body + varint(STATE_LIMIT) + varint(HEADER_LIMIT)).ljust(76, b"\0"), 0)
         if self.state not in ("receiving", "live"):
             return
@@ -436,6 +454,14 @@ class Client:
         datagram = self.epoch.write(now, parts, packet) if parts or packet or due else None
         if datagram:
             yield datagram
+
+    def join_at(self) -> float:
+        """When the next join goes."""
+        if self.state == "joining" or self.rejoins:
+            return self.retry_at if self.state != "closed" else float("inf")
+        since = self.epoch.unanswered() if self.state in ("receiving", "live") else None
+        patience = 2 * (self.epoch.round_trip + 25 * MS if self.epoch and self.epoch.round_trip is not None else 250 * MS)
+        return float("inf") if since is None else since + max(400 * MS, patience)
 
     def silence(self) -> int:
         """Until the next sign of life."""

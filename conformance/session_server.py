@@ -42,7 +42,7 @@ class ServedEpoch(Epoch):
                 self.arrived.add(index)
 
     def take_said(self, kind: int, elements: tuple) -> None:
-        if kind == STATE and elements[0] == 1 and len(self.arrived) == len(self.offered) and not self.live:
+        if kind == STATE and elements[0] == 1 and not self.live:
             self.live = True
             if self.participates:
                 device = device_scene(self.scene)
@@ -90,6 +90,7 @@ class Connection:
         self.peer, self.client, self.role, self.nonce, self.limits = peer, client, role, nonce, limits
         self.proven = self.repeats_welcome = self.outdated = False
         self.epoch: ServedEpoch
+        self.token = 0                                      # the first epoch
         self.serial = self.heard_at = self.welcome_at = 0
 
     def begin(self, server: Server, epoch: int, now: int) -> None:
@@ -97,13 +98,14 @@ class Connection:
         self.repeats_welcome, self.outdated = self.proven, False
         self.heard_at = self.welcome_at = now
         self.epoch = ServedEpoch(epoch, self.client, self.serial, len(server.declaration), fnv1a(server.declaration), server.start)
+        self.token = self.token or epoch
         self.epoch.scene = server.scene
         self.epoch.offer(server.declaration, self.role == 1)
 
     def welcome(self) -> bytes:
         e = self.epoch
         body = head(HANDSHAKE, WELCOME) + struct.pack("<Q", self.nonce) + varint(e.serial) + struct.pack("<QH", e.epoch, e.client)
-        return sealed(body + varint(e.size) + struct.pack("<Q", e.digest) + varint(e.start), 0, DOWN)
+        return sealed(body + varint(e.size) + struct.pack("<Q", e.digest) + varint(e.start) + bytes(8), 0, DOWN)
 
     def state(self) -> str:
         return "live" if self.epoch.live else "receiving"
@@ -183,8 +185,10 @@ class Server:
         if version != 1:
             self.refuse(peer, nonce, WRONG_VERSION)
             return
+        token, _ = e.number(8, CUT), e.number(1, CUT)
         state_limit, header_limit = e.varint(CUT, SPARE), e.varint(CUT, SPARE)
         require(not any(e.take(e.left(), CUT)), *SPARE)
+        c = self.follow(peer, c, token)
         if c and c.nonce == nonce:
             self.says.append((peer, c.welcome()))
             return
@@ -195,10 +199,20 @@ class Server:
         elif None not in self.connections:
             self.refuse(peer, nonce, FULL)
         else:
-            place = self.connections.index(None)
+            place = c.client if c else self.connections.index(None)
             c = self.connections[place] = Connection(peer, place, role, nonce, (state_limit, header_limit))
             c.begin(self, next(self.epochs), now)
             self.says.append((peer, c.welcome()))
+
+    def follow(self, peer: int, here: Optional[Connection], token: int) -> Optional[Connection]:
+        """The client of this token is at this address now."""
+        known = next((k for k in self.there() if k.token == token), None)
+        if known is None or known is here:
+            return here
+        if here:
+            self.end(here, BYE, says=False)
+        known.peer = peer
+        return known
 
     def fits(self, limits: tuple[int, int]) -> bool:
         return state_bytes(self.scene) <= limits[0] and len(self.declaration) <= limits[1]

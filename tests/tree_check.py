@@ -34,6 +34,7 @@ SYSTEM = {
     "cli/commands/cmd_link.cpp": "to wait for datagrams of many sockets",
     "cli/live/device_loop.cpp": "single keys",
     "cli/live/device_loop.h": "single keys",
+    "cli/live/token_file.cpp": "a file that one program holds",
     "cli/live/ticker.cpp": "to wait for a time or a datagram",
     "cli/output.cpp": "files that appear whole or not at all, and go when a signal comes",
     "cli/progress.cpp": "terminals",

@@ -48,6 +48,8 @@ std::uint32_t kind_of(ServerEvent::Kind kind) noexcept {
       return TACTUS_EVENT_LIVE;
     case ServerEvent::Kind::left:
       return TACTUS_EVENT_CLOSED;
+    case ServerEvent::Kind::moved:
+      return TACTUS_EVENT_MOVED;
     case ServerEvent::Kind::widened:
       break;
   }

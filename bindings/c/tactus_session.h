@@ -38,7 +38,8 @@ enum {
   TACTUS_EVENT_JOINED = 1,   /* server: a client joined and gets the declaration */
   TACTUS_EVENT_LIVE = 2,     /* the declaration is there; client: the receiver has a new scene */
   TACTUS_EVENT_CLOSED = 3,   /* over, for `reason` */
-  TACTUS_EVENT_WIDENED = 4   /* server: the bounds of the client are multiplied by `widening` from now on */
+  TACTUS_EVENT_WIDENED = 4,  /* server: the bounds of the client are multiplied by `widening` from now on */
+  TACTUS_EVENT_MOVED = 5     /* server: a client has another address, its `peer` */
 };
 
 typedef struct tactus_event {

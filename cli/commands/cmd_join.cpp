@@ -22,6 +22,7 @@
 #include "cli/live/device_loop.h"
 #include "cli/live/live_report.h"
 #include "cli/live/ticker.h"
+#include "cli/live/token_file.h"
 #include "cli/live/wire.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/options_link.h"
@@ -82,13 +83,6 @@ tl::expected<Body, Failure> make_body(const JoinOptions& options) {
   return body;
 }
 
-/// Objects and meshes have the names and sizes of those of the server.
-bool is_same_scene(const tactus::Scene& served, const tactus::Scene& own) {
-  const auto same_objects = std::ranges::equal(served.objects, own.objects, {}, &RigidObject::name, &RigidObject::name);
-  const auto vertices = [](const DeformableObject& o) { return o.rest.size(); };
-  return same_objects && std::ranges::equal(served.deformables, own.deformables, {}, vertices, vertices);
-}
-
 Pace pace_of(const device::ServoTimes& times) {
   const auto us = [&](double share) { return 1e-3 * static_cast<double>(times.lateness.quantile(share)); };
   return {times.ticks, times.missed, us(0.5), us(0.99)};
@@ -97,8 +91,13 @@ Pace pace_of(const device::ServoTimes& times) {
 /// Takes part in a session in real time.
 class Visit {
  public:
-  Visit(const JoinOptions& options, SessionClient& session, ClientWire& wire)
-      : options_(options), session_(session), wire_(wire) {}
+  Visit(const JoinOptions& options, SessionClient& session, net::UdpSocket& socket, const net::Address& server, ClientWire& wire)
+      : options_(options),
+        session_(session),
+        socket_(socket),
+        server_(server),
+        wire_(wire),
+        token_(options.server, options.user) {}
 
   Outcome hear();
   void say(std::uint64_t now);
@@ -128,11 +127,21 @@ class Visit {
 
  private:
   Outcome arrive();
+  void look_at_network(std::uint64_t now);
+  void look_at_seat(std::uint64_t now);
+  void tell(const std::string& text) const {
+    if (!options_.common.quiet) fmt::print(stderr, "{}\n", text);
+  }
 
   const JoinOptions& options_;
   SessionClient& session_;
+  net::UdpSocket& socket_;
+  net::Address server_;
   ClientWire& wire_;
-  bool has_joined_ = false;
+  TokenFile token_;
+  bool has_joined_ = false, is_unanswered_ = false;
+  std::uint64_t renewed_at_ = 0, live_at_ = 0, silent_since_ = 0;  // [us]
+  std::optional<std::uint8_t> seat_;                               // that was told
   TraceFrame frame_;
   std::int64_t shown_ = -1, written_ = -1;
 };
@@ -141,13 +150,17 @@ class Visit {
 Outcome Visit::arrive() {
   was_live = true;
   const tactus::Scene& scene = *session_.receiver()->scene();
-  if (body && !is_same_scene(scene, *body->shapes->stream_scene()))
-    return refuse_arguments("--scene " + options_.scene + ": the server simulates another scene",
+  const SessionStatus status = session_.status();
+  if (body && status.world != sim::fingerprint(body->shapes->scene()))
+    return refuse_arguments("--scene " + options_.scene + ": the server simulates another scene, or another version of it",
                             "Give the scene of the server.");
+  live_at_ = microseconds_now();
+  seat_.reset();
+  token_.keep(status.token);
   if (options_.output.empty()) return {};
   if (trace) {  // it holds the scene before
     at_end = true;
-    if (!options_.common.quiet) fmt::print(stderr, "the server has another scene: {} ends here\n", shown_path(options_.output));
+    tell(fmt::format("the server has begun anew: {} ends here", shown_path(options_.output)));
     return {};
   }
   TraceInfo info = replica_info(scene, "join " + options_.server);
@@ -181,16 +194,48 @@ Outcome Visit::hear() {
   }
   const std::uint64_t now = microseconds_now();
   if (const auto there = wire_.handle_timeout(now); !there && !gone) gone = there.error();
-  if (wire_.is_open() && !std::exchange(has_joined_, true)) session_.open(now, system_entropy());
+  if (wire_.is_open() && !std::exchange(has_joined_, true)) session_.open(now, system_entropy(), token_.token());
   session_.handle_timeout(now);
   while (const auto event = session_.poll_event()) {
     if (event->kind == ClientEvent::Kind::closed) closed = event->reason;
     if (event->kind == ClientEvent::Kind::live) TACTUS_CHECK(arrive());
   }
+  look_at_network(now);
+  look_at_seat(now);
   if (!gone || closed) return {};
   if (gone->rule != std::string_view("R-SEA-3")) return refuse(options_.server, *gone);
   closed = LeaveReason::bye;  // 70, section 11.4
   return {};
+}
+
+/// Without an answer the session joins again by itself. This end's address may be gone, or what the server knew of the seal.
+void Visit::look_at_network(std::uint64_t now) {
+  constexpr std::uint64_t kTold = 1'000'000, kRenewed = 1'500'000, kEvery = 5'000'000;  // [us]
+  const std::uint64_t unanswered = session_.unanswered(now);
+  if (unanswered > 0 && silent_since_ == 0) silent_since_ = now - unanswered;
+  if (unanswered > kTold && !std::exchange(is_unanswered_, true)) tell("no answer from the server for 1 s: joining again");
+  if (unanswered == 0) {
+    if (std::exchange(is_unanswered_, false))
+      tell(fmt::format("the server answers again, after {:.1f} s", 1e-6 * static_cast<double>(now - silent_since_)));
+    silent_since_ = 0;
+    return;
+  }
+  if (unanswered < kRenewed || now < renewed_at_ + kEvery) return;
+  renewed_at_ = now;
+  if (auto fresh = net::UdpSocket::connect(server_)) socket_ = std::move(*fresh);
+  wire_.renew(now);
+}
+
+/// What the hand of this end is.
+void Visit::look_at_seat(std::uint64_t now) {
+  constexpr std::uint64_t kSoon = 1'000'000;  // [us]: by then the server has told
+  if (!body || closed || session_.status().state != SessionState::live) return;
+  const std::uint8_t seat = session_.status().seat;
+  if (seat_ == seat || (seat == 0 && now < live_at_ + kSoon)) return;
+  seat_ = seat;
+  const std::string& user = body->shapes->scene().users[body->user].name;
+  if (seat > 0) return tell("plays " + user);
+  tell(fmt::format("{} is played by another: this end looks on until the seat is free. --user NAME plays another one", user));
 }
 
 void Visit::say(std::uint64_t now) {
@@ -201,6 +246,7 @@ Outcome Visit::close(std::uint64_t now) {
   session_.close();
   say(now);
   wire_.close();
+  token_.keep(0);
   if (!trace) return {};
   const auto done = trace->finish();
   const TraceRecorder::Status status = trace->status();
@@ -361,20 +407,21 @@ Outcome run(const JoinOptions& typed) {
   options.server = server.text();
   if (!options.participates() && !options.user.empty())
     return refuse_arguments("--user: nothing is touched without --scene", "Give the scene of the server with --scene.");
-  auto session = SessionClient::create({.role = options.participates() ? Role::participant : Role::observer,
-                                        .playout = {playout_of(options.playout)},
-                                        .device = {.position = options.device_error, .weber_fraction = options.weber_fraction}});
-  if (!session) return refuse("session", session.error());
-  auto socket = net::UdpSocket::connect(server);
-  if (!socket) return refuse(options.server, socket.error());
   std::optional<Body> body;
   std::optional<device::RealTime> real_time;
   if (options.participates()) {
     real_time.emplace();
     TACTUS_TRY(body, make_body(options));
   }
+  auto session = SessionClient::create({.role = options.participates() ? Role::participant : Role::observer,
+                                        .playout = {playout_of(options.playout)},
+                                        .device = {.position = options.device_error, .weber_fraction = options.weber_fraction},
+                                        .seat = static_cast<std::uint8_t>(body ? body->user + 1 : 0)});
+  if (!session) return refuse("session", session.error());
+  auto socket = net::UdpSocket::connect(server);
+  if (!socket) return refuse(options.server, socket.error());
   TACTUS_TRY(const auto wire, make_wire(options, *socket));
-  Visit visit(options, *session, *wire);
+  Visit visit(options, *session, *socket, server, *wire);
   visit.body = std::move(body);
 
   Ticker ticker(1'000'000 / sim::kTickRate);

@@ -14,7 +14,9 @@
 #include <tactus/session/session_server.h>
 #include <tactus/sim/server.h>
 #include <tactus/trace/trace_file.h>
+#include "cli/live/event_log.h"
 #include "cli/live/live_report.h"
+#include "cli/live/service.h"
 #include "cli/live/ticker.h"
 #include "cli/live/wire.h"
 #include "cli/observe/observation.h"
@@ -38,142 +40,11 @@ struct ServeOptions {
   double duration = 0;                   // [s], 0: until interrupted
   double rate = 0;                       // [bit/s] to each client
   std::uint64_t seed = 1;
+  std::string log = "text";
   TriggerArguments triggers;
   MeshArguments meshes;
   CommonOptions common;
 };
-
-/// Serves a simulated world in real time.
-class Service {
- public:
-  /// in   observation  may be null: nobody observes
-  Service(sim::Server& world, SessionServer& sessions, ServerWire& wire, Observation* observation)
-      : world_(world), sessions_(sessions), wire_(wire), observation_(observation), players_(world.scene().users.size()) {
-    for (const sim::SceneUser& user : world.scene().users) devices_.push_back({.position = user.start});
-  }
-
-  /// Take what has come, and what time has brought.
-  void hear();
-  /// The world comes to this tick.
-  Outcome step(std::uint64_t now, std::int64_t tick, std::optional<TraceWriter>& trace, const std::string& output);
-  void say(std::uint64_t now);
-  /// Take leave of all.
-  void close(std::uint64_t now);
-  std::size_t live() const;
-  std::uint64_t refused() const { return refused_; }
-
- private:
-  Outcome make_tick(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output);
-  void seat(std::uint64_t now);
-  std::uint64_t silence_of(std::uint16_t client, std::uint64_t now) const;
-  void end(std::uint64_t peer);
-  bool has_session(std::uint64_t peer) const { return sessions_.has_peer(peer); }
-
-  sim::Server& world_;
-  SessionServer& sessions_;
-  ServerWire& wire_;
-  Observation* observation_;
-  std::vector<std::optional<std::uint16_t>> players_;  // the client that plays each user of the scene
-  std::vector<DeviceSample> devices_;
-  std::int64_t next_ = 0, left_out_ = 0;  // [ticks] the one to be made, those that the world was not simulated
-  std::uint64_t refused_ = 0;
-};
-
-/// Each datagram has the time at which it was taken: what came while another was handled did not come before it.
-void Service::hear() {
-  constexpr int kMost = 1000;  // at a time: a tick must not wait for a flood to end
-  for (int i = 0; i < kMost; ++i) {
-    const auto heard = wire_.receive(microseconds_now());
-    if (!heard) break;
-    const std::uint64_t now = microseconds_now();
-    if (!sessions_.handle_datagram(now, heard->peer, heard->bytes)) ++refused_;
-    wire_.settle([this](std::uint64_t peer) { return has_session(peer); });
-    say(now);
-  }
-  while (const auto peer = wire_.poll_closed()) end(*peer);
-  sessions_.handle_timeout(microseconds_now());
-}
-
-/// The peer is gone: its client has left, even if no leave was heard.
-void Service::end(std::uint64_t peer) {
-  for (std::uint16_t i = 0; i < sessions_.clients(); ++i)
-    if (sessions_.status(i).peer == peer) sessions_.close(i, LeaveReason::bye);
-}
-
-void Service::close(std::uint64_t now) {
-  sessions_.close();
-  say(now);
-  wire_.close();
-}
-
-std::uint64_t Service::silence_of(std::uint16_t client, std::uint64_t now) const {
-  const std::uint64_t heard = sessions_.status(client).heard;
-  return now > heard ? now - heard : 0;
-}
-
-/// A participant plays the first user of the scene whom nobody plays, as long as it is heard. A hand that is not heard lifts off within a
-/// second; that of one who left, or was silent for too long, is where it was before anybody came.
-void Service::seat(std::uint64_t now) {
-  constexpr std::uint64_t kFresh = 300'000, kLifted = 1'000'000, kEmpty = 10'000'000;  // [us] of silence
-  for (std::size_t i = 0; i < players_.size(); ++i) {
-    if (!players_[i]) continue;
-    const std::uint64_t silence = silence_of(*players_[i], now);
-    if (sessions_.status(*players_[i]).state == SessionState::closed || silence > kEmpty) {
-      players_[i].reset();
-      devices_[i] = {.position = world_.scene().users[i].start};
-      world_.lift(i, 1);
-      continue;
-    }
-    world_.lift(i, static_cast<double>(kLifted - std::clamp(silence, kFresh, kLifted)) / (kLifted - kFresh));
-  }
-  for (std::uint16_t client = 0; client < sessions_.clients(); ++client) {
-    const ClientStatus status = sessions_.status(client);
-    const bool plays = status.state == SessionState::live && status.role == Role::participant;
-    if (!plays || silence_of(client, now) > kFresh || std::ranges::find(players_, client) != players_.end()) continue;
-    const auto free = std::ranges::find_if(players_, [](const auto& player) { return !player; });
-    if (free != players_.end()) *free = client;
-  }
-}
-
-void Service::say(std::uint64_t now) {
-  while (const auto datagram = sessions_.poll_datagram(now)) wire_.send(datagram->peer, datagram->bytes);
-  while (sessions_.poll_event()) {
-  }
-}
-
-/// Ticks that were missed are made at once, if they are few; of many the world knows nothing, but time has passed.
-Outcome Service::step(std::uint64_t now, std::int64_t tick, std::optional<TraceWriter>& trace, const std::string& output) {
-  constexpr std::int64_t kAtOnce = 10;
-  wire_.tick(now, [this](std::uint64_t peer) { return has_session(peer); });
-  seat(now);
-  if (tick - next_ > kAtOnce) left_out_ += tick - std::exchange(next_, tick);
-  for (; next_ <= tick; ++next_) TACTUS_CHECK(make_tick(now, trace, output));
-  return {};
-}
-
-Outcome Service::make_tick(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output) {
-  for (std::size_t i = 0; i < players_.size(); ++i)
-    if (players_[i]) devices_[i] = sessions_.device(*players_[i], now).value_or(devices_[i]);
-  world_.observe();
-  TraceFrame& frame = world_.frame();
-  frame.tick += left_out_;
-  world_.touch(devices_);
-  const Truth truth = world_.truth();
-  if (const auto sent = sessions_.submit(now, frame.tick, truth); !sent)
-    return refuse("session", place_of_tick(frame.tick), sent.error());
-  say(now);
-  if (observation_ != nullptr) observation_->offer(frame, truth.loads);
-  if (trace)
-    if (const auto written = trace->write(frame); !written) return refuse(output, place_of_tick(frame.tick), written.error());
-  if (auto stepped = world_.step(); !stepped) return refuse(stepped.error());
-  return {};
-}
-
-std::size_t Service::live() const {
-  std::size_t count = 0;
-  for (std::uint16_t i = 0; i < sessions_.clients(); ++i) count += sessions_.status(i).state == SessionState::live ? 1u : 0u;
-  return count;
-}
 
 std::string meter_text(const sim::Server& world, const SessionServer& sessions, const Service& service, const Ticker& ticker) {
   std::string text =
@@ -292,33 +163,35 @@ tl::expected<std::unique_ptr<ServerWire>, Failure> make_wire(const ServeOptions&
 /// Tells of ticks that this machine did not make in time.
 class MissedTicks {
  public:
-  explicit MissedTicks(bool quiet) : quiet_(quiet) {}
+  explicit MissedTicks(const EventLog& log) : log_(log) {}
   /// Every ten seconds in which more than one in a hundred were.
   void look(std::uint64_t now, const Ticker& ticker) {
     constexpr std::uint64_t kEvery = 10'000'000;
     if (now < looked_at_ + kEvery) return;
     const std::uint64_t ticks = ticker.ticks() + ticker.missed() - ticks_, missed = ticker.missed() - missed_;
-    if (looked_at_ > 0 && 100 * missed > ticks && !quiet_)
-      fmt::print(
-          stderr,
-          "missed {} of {} ticks in {:.0f} s: this machine has no time for them. Serve fewer clients, or end other programs\n",
-          missed, ticks, 1e-6 * static_cast<double>(now - looked_at_));
+    if (looked_at_ > 0 && 100 * missed > ticks)
+      log_.tell(
+          now, "missed_ticks",
+          fmt::format("missed {} of {} ticks in {:.0f} s: this machine has no time for them. Serve fewer clients, or end other "
+                      "programs",
+                      missed, ticks, 1e-6 * static_cast<double>(now - looked_at_)),
+          {{"missed", missed}, {"of", ticks}});
     looked_at_ = now;
     ticks_ += ticks;
     missed_ += missed;
   }
 
  private:
-  bool quiet_;
+  const EventLog& log_;
   std::uint64_t looked_at_ = 0, ticks_ = 0, missed_ = 0;
 };
 
 /// Until it is to end.
-Outcome serve(const ServeOptions& options, const sim::Server& world, SessionServer& sessions, Service& service, Ticker& ticker,
-              const net::UdpSocket& socket, std::optional<TraceWriter>& trace) {
+Outcome serve(const ServeOptions& options, const sim::Server& world, SessionServer& sessions, Service& service,
+              const EventLog& log, Ticker& ticker, const net::UdpSocket& socket, std::optional<TraceWriter>& trace) {
   const StopOnSignal stop;
   Meter meter(options.common.progress());
-  MissedTicks missed(options.common.quiet);
+  MissedTicks missed(log);
   const auto ticks = options.duration > 0 ? std::llround(options.duration * sim::kTickRate) : INT64_MAX;
   while (StopOnSignal::caught() == 0 && world.frame().tick < ticks) {
     const auto woken = ticker.wait(socket.handle(), sessions.next_timeout().value_or(UINT64_MAX));
@@ -346,7 +219,8 @@ Outcome run(const ServeOptions& typed) {
   const SessionServerOptions settings{.sender = options.meshes.sender(options.triggers),
                                       .clients = static_cast<std::uint16_t>(options.clients),
                                       .rate = static_cast<std::uint64_t>(options.rate),
-                                      .headers = static_cast<std::uint32_t>(kUdpHeader + seal)};
+                                      .headers = static_cast<std::uint32_t>(kUdpHeader + seal),
+                                      .world = sim::fingerprint(world->scene())};
   TACTUS_TRY(auto recording, make_recording(options, *world));
   TACTUS_TRY(const auto observation, make_observation(options, *world));
   const device::RealTime real_time;
@@ -356,9 +230,13 @@ Outcome run(const ServeOptions& typed) {
   if (!options.common.quiet) fmt::print(stderr, "serving {} at {}\n", options.scene, options.listen);
   if (!options.common.quiet && observation) fmt::print(stderr, "observe it at {}\n", observation->address());
 
-  Service service(*world, *sessions, *wire, observation.get());
+  const auto form = options.log == "json"  ? EventLog::Form::json
+                    : options.common.quiet ? EventLog::Form::none
+                                           : EventLog::Form::text;
+  const EventLog log(form, origin);
+  Service service(*world, *sessions, *wire, observation.get(), log);
   Ticker ticker(1'000'000 / sim::kTickRate, origin);
-  const Outcome worked = serve(options, *world, *sessions, service, ticker, *socket, recording.trace);
+  const Outcome worked = serve(options, *world, *sessions, service, log, ticker, *socket, recording.trace);
   const double seconds = static_cast<double>(ticker.tick() + 1) / sim::kTickRate;
   Json report = to_json(options, *sessions, *world->stream_scene(), service, ticker, seconds, wire->seal());
   service.close(microseconds_now());
@@ -396,10 +274,17 @@ void setup_serve(Command& app, Action& action) {
       ->type_name("PORT");
   add_bit_rate(command, "--rate", options->rate, "Most that each client is sent, headers included [no limit]");
   add_quantity(command, "--duration", options->duration, Dimension::time, "End after this long [until Ctrl-C]");
+  command
+      .add_option("--log", options->log,
+                  "Each event (who joins, plays what, is silent, is gone) as a line on standard error: text or json")
+      ->one_of({"text", "json"})
+      ->show_default()
+      ->type_name("FORM");
   add_encoder_options(command, options->triggers, options->meshes);
   add_output_options(command, options->common);
   command.footer(
-      "A participant plays the first user of the scene whom nobody plays; others and observers look on.\n\n"
+      "A participant plays the user of the scene that it asks for, unless another one does: then it looks on, as observers do.\n"
+      "The hand of a participant that is not heard lifts off within 1 s. Its seat is kept for 10 s, and for its token.\n\n"
       "A browser that observes sees a stream of its own under the same bounds, beside the truth, made by a thread of its own.\n"
       "From another machine: ssh -L 8080:127.0.0.1:8080 SERVER, then the same address.\n"
       "Example, in three terminals, and http://127.0.0.1:8080/ in a browser:\n"

@@ -29,6 +29,7 @@ class SealedServerWire final : public ServerWire {
   void send(std::uint64_t peer, std::span<const std::uint8_t> bytes) override {
     if (const auto sealed = server_.seal(peer, bytes)) socket_.send(sealed->to, sealed->bytes);
   }
+  std::string address_of(std::uint64_t peer) const override { return server_.address_of(peer).text(); }
   void tick(std::uint64_t now, const HasSession& has_session) override {
     server_.work(now);
     if (++ticks_ % kTicksToLook == 0) server_.keep_only(now, has_session);
@@ -56,22 +57,37 @@ class SealedServerWire final : public ServerWire {
 
 class SealedClientWire final : public ClientWire {
  public:
-  SealedClientWire(net::UdpSocket& socket, seal::Client client) : socket_(socket), client_(std::move(client)) { flush(); }
+  SealedClientWire(net::UdpSocket& socket, std::string key, seal::Client client)
+      : socket_(socket), key_(std::move(key)), client_(std::move(client)) {
+    flush();
+  }
 
   Result<std::optional<std::span<const std::uint8_t>>> receive(std::uint64_t now) override {
     for (int i = 0; i < kMost; ++i) {
       const auto received = socket_.receive(buffer_);
       if (!received) break;
-      TACTUS_TRY(const auto opened, client_.open(now, received->bytes));
+      const auto opened = client_.open(now, received->bytes);
       flush();
-      if (opened) return opened;
+      if (!opened && !renews_) return tl::unexpected(opened.error());
+      if (opened && *opened) return *opened;
     }
     return std::nullopt;
   }
   Result<void> handle_timeout(std::uint64_t now) override {
     const auto done = client_.handle_timeout(now);
     flush();
-    return done;
+    renews_ = renews_ && !client_.is_open();
+    return renews_ ? Result<void>() : done;  // the session knows how long to wait
+  }
+  /// A new handshake. The key may have gone meanwhile; then what there is goes on.
+  void renew(std::uint64_t now) override {
+    auto key = seal::Key::read(key_);
+    if (!key) return;
+    auto client = seal::Client::create(std::move(*key), now);
+    if (!client) return;
+    client_ = std::move(*client);
+    renews_ = true;
+    flush();
   }
   void send(std::span<const std::uint8_t> bytes) override {
     if (const auto sealed = client_.seal(bytes)) socket_.send(*sealed);
@@ -90,7 +106,9 @@ class SealedClientWire final : public ClientWire {
   }
 
   net::UdpSocket& socket_;
+  std::string key_;  // path of its file
   seal::Client client_;
+  bool renews_ = false;  // there was another association before
   std::array<std::uint8_t, 2048> buffer_{};
 };
 
@@ -118,7 +136,7 @@ tl::expected<std::unique_ptr<ClientWire>, Failure> sealed_wire_of_client(net::Ud
   TACTUS_TRY(auto read, read_key(key));
   auto client = seal::Client::create(std::move(read), microseconds_now());
   if (!client) return refuse(key, client.error());
-  return std::make_unique<SealedClientWire>(socket, std::move(*client));
+  return std::make_unique<SealedClientWire>(socket, key, std::move(*client));
 }
 
 }  // namespace tactus::cli

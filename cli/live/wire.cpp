@@ -42,6 +42,10 @@ class PlainServerWire final : public ServerWire {
   void send(std::uint64_t peer, std::span<const std::uint8_t> bytes) override {
     if (const net::Address* to = peers_.find(peer)) socket_.send(*to, bytes);
   }
+  std::string address_of(std::uint64_t peer) const override {
+    const net::Address* const at = peers_.find(peer);
+    return (at != nullptr ? *at : net::Address()).text();
+  }
   void tick(std::uint64_t /*now*/, const HasSession& /*has_session*/) override {}
   std::optional<std::uint64_t> poll_closed() override { return std::nullopt; }
   void close() override {}
@@ -64,6 +68,7 @@ class PlainClientWire final : public ClientWire {
   }
   Result<void> handle_timeout(std::uint64_t /*now*/) override { return {}; }
   void send(std::span<const std::uint8_t> bytes) override { socket_.send(bytes); }
+  void renew(std::uint64_t /*now*/) override {}
   bool is_open() const override { return true; }
   std::optional<std::uint64_t> next_timeout() const override { return std::nullopt; }
   void close() override {}

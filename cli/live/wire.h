@@ -65,6 +65,7 @@ class ServerWire {
   /// After each datagram, when the sessions have taken it.
   virtual void settle(const HasSession& has_session) = 0;
   virtual void send(std::uint64_t peer, std::span<const std::uint8_t> bytes) = 0;
+  virtual std::string address_of(std::uint64_t peer) const = 0;  ///< HOST:PORT; "nowhere": it is unknown
   virtual void tick(std::uint64_t now, const HasSession& has_session) = 0;
   /// A peer that is gone, whatever its session believes.
   virtual std::optional<std::uint64_t> poll_closed() = 0;
@@ -80,6 +81,7 @@ class ClientWire {
   virtual Result<std::optional<std::span<const std::uint8_t>>> receive(std::uint64_t now) = 0;
   virtual Result<void> handle_timeout(std::uint64_t now) = 0;  ///< err  the wire is gone
   virtual void send(std::span<const std::uint8_t> bytes) = 0;
+  virtual void renew(std::uint64_t now) = 0;                      ///< nobody answers: the other end may have forgotten this one
   virtual bool is_open() const = 0;                               ///< the session may begin
   virtual std::optional<std::uint64_t> next_timeout() const = 0;  ///< [us] nothing: never
   virtual void close() = 0;

@@ -23,15 +23,23 @@ class TokenBucket {
   explicit TokenBucket(std::uint64_t rate) noexcept : rate_(static_cast<std::int64_t>(rate)), level_(rate_ * kHolds) {}
 
   bool is_open(std::uint64_t now) noexcept {
-    if (rate_ == 0) return true;
-    const auto passed = static_cast<std::int64_t>(std::min<std::uint64_t>(now - filled_at_, kHolds));
-    level_ = std::min(level_ + passed * rate_, rate_ * kHolds);
-    filled_at_ = now;
-    return level_ > 0;
+    fill(now);
+    return rate_ == 0 || level_ > 0;
   }
-  void take(std::int64_t bits) noexcept { level_ -= rate_ == 0 ? 0 : bits * 1'000'000; }
+  void take(std::int64_t bits, std::uint64_t now) noexcept {
+    fill(now);
+    level_ -= rate_ == 0 ? 0 : bits * 1'000'000;
+  }
 
  private:
+  /// Whoever asks: what passes between a session's phases counts, too.
+  void fill(std::uint64_t now) noexcept {
+    const std::int64_t whole = rate_ * kHolds, lacks = rate_ == 0 ? 0 : (whole - level_) / rate_ + 1;
+    const auto passed = static_cast<std::int64_t>(std::min(now - filled_at_, static_cast<std::uint64_t>(lacks)));
+    level_ = std::min(level_ + passed * rate_, whole);
+    filled_at_ = now;
+  }
+
   std::int64_t rate_, level_;  // [bit/s], [1e-6 bit]
   std::uint64_t filled_at_ = 0;
 };

@@ -14,9 +14,9 @@ constexpr std::uint16_t kHandshake = 0, kParts = 1, kPacket = 2;
 // Kinds of handshakes.
 constexpr std::uint16_t kJoin = 0, kWelcome = 1, kRefusal = 2, kLeave = 3, kFirstUnknownKind = 4;
 // Types of parts.
-constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPace = 3, kPiece = 4, kReport = 4, kState = 5,
-                       kBaselines = 5, kHash = 6, kFragment = 7,
-                       kFirstUnknown = 9;  // up 3 buttons, 4 report, 5 state; down 3 pace, 4 piece, 5 baselines; 8: packet
+constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPace = 3, kPiece = 4, kReport = 4, kState = 5, kSeat = 5,
+                       kHash = 6, kBaselines = 6, kFragment = 7,
+                       kFirstUnknown = 9;  // up 3 buttons, 4 report, 5 state, 6 hash; down 3 pace, 4 piece, 5 seat, 6 baselines; 8: packet
 
 constexpr std::uint32_t kMagic = 0x53544354;  // "TCTS"
 constexpr std::uint8_t kVersion = 1;
@@ -31,7 +31,6 @@ bool kind_comes(std::uint16_t kind, Direction direction) noexcept {
   return kind == kLeave || (kind < kFirstUnknownKind && (kind == kJoin) == (direction == Direction::up));
 }
 bool part_comes(std::uint8_t type, Direction direction) noexcept {
-  if (type == kHash) return direction == Direction::up;
   return type != kClock || direction == Direction::down;
 }
 
@@ -70,6 +69,8 @@ Result<Datagram> read_join(ByteReader& r) noexcept {
     return fail(Errc::unsupported, "R-SES-9", 8 * kHeadSize);
   if (r.ok() && !said.is_known && r.bit_offset() / 8 + r.remaining() >= kLeastJoin - kCheckSize) return Datagram(said);
   said.role = static_cast<Role>(role);
+  said.token = r.u64();
+  said.seat = r.u8();
   said.state_limit = r.varint();
   said.header_limit = r.varint();
   const std::uint64_t padding = r.bit_offset();
@@ -88,6 +89,7 @@ Result<Datagram> read_welcome(ByteReader& r) noexcept {
   said.size = r.varint();
   said.hash = r.u64();
   said.start = r.varint();
+  said.world = r.u64();
   if (r.ok() && said.start >= kEndOfTime) return fail(Errc::malformed, "R-SES-3", r.bit_offset());
   return handshake(r, said);
 }
@@ -147,12 +149,12 @@ constexpr std::uint64_t head_of(std::uint16_t kind) noexcept { return kHandshake
 
 void put(Put& to, const Join& j) noexcept {
   to.integer(head_of(kJoin), 2).integer(kMagic, 4).integer(kVersion, 1).integer(static_cast<std::uint64_t>(j.role), 1);
-  to.integer(j.nonce, 8).varint(j.state_limit).varint(j.header_limit);
+  to.integer(j.nonce, 8).integer(j.token, 8).integer(j.seat, 1).varint(j.state_limit).varint(j.header_limit);
   while (to.at() < kLeastJoin - kCheckSize) to.integer(0, 1);
 }
 void put(Put& to, const Welcome& w) noexcept {
   to.integer(head_of(kWelcome), 2).integer(w.nonce, 8).varint(w.serial).integer(w.epoch, 8).integer(w.client, 2);
-  to.varint(w.size).integer(w.hash, 8).varint(w.start);
+  to.varint(w.size).integer(w.hash, 8).varint(w.start).integer(w.world, 8);
 }
 void put(Put& to, const Refusal& r) noexcept {
   to.integer(head_of(kRefusal), 2).integer(r.nonce, 8).integer(static_cast<std::uint64_t>(r.reason), 1);
@@ -170,6 +172,7 @@ std::size_t size_of(const PiecePart& p) noexcept { return varint_size(p.index) +
 std::size_t size_of(const StatePart&) noexcept { return 1; }
 std::size_t size_of(const ReportPart& r) noexcept { return varint_size(r.delay) + 1; }
 std::size_t size_of(const BaselinesPart&) noexcept { return 1; }
+std::size_t size_of(const SeatPart&) noexcept { return 1; }
 std::size_t size_of(const HashPart&) noexcept { return 7; }
 std::size_t size_of(const FragmentPart& f) noexcept {
   return varint_size(f.back) + varint_size(f.substream) + varint_size(f.index) + varint_size(f.count) + f.bytes.size();
@@ -184,6 +187,7 @@ void put(Put& to, const PiecePart& p) noexcept { to.varint(p.index).bytes(p.byte
 void put(Put& to, const StatePart& s) noexcept { to.integer(s.live, 1); }
 void put(Put& to, const ReportPart& r) noexcept { to.varint(r.delay).integer(r.key, 1); }
 void put(Put& to, const BaselinesPart& b) noexcept { to.integer(b.policy, 1); }
+void put(Put& to, const SeatPart& s) noexcept { to.integer(s.seat, 1); }
 void put(Put& to, const HashPart& h) noexcept { to.integer(h.substream, 1).integer(h.number, 2).integer(h.hash, 4); }
 void put(Put& to, const FragmentPart& f) noexcept {
   to.varint(f.back).varint(f.substream).varint(f.index).varint(f.count).bytes(f.bytes);
@@ -195,7 +199,7 @@ std::uint8_t type_of(const Part& part) noexcept {
   if (std::holds_alternative<PacePart>(part)) return kPace;
   if (std::holds_alternative<ReportPart>(part)) return kReport;
   if (std::holds_alternative<BaselinesPart>(part)) return kBaselines;
-  return static_cast<std::uint8_t>(part.index() + 1);
+  return std::holds_alternative<SeatPart>(part) ? kSeat : static_cast<std::uint8_t>(part.index() + 1);
 }
 
 /// The elements of a part; the reader says whether they were all there.
@@ -209,6 +213,7 @@ Part read_part(std::uint8_t type, Direction direction, ByteReader& r) noexcept {
     return ReportPart{delay, r.u8()};
   }
   if (type == kBaselines && direction == Direction::down) return BaselinesPart{r.u8()};
+  if (type == kSeat && direction == Direction::down) return SeatPart{r.u8()};
   switch (type) {
     case kAcknowledgement: {
       Acknowledgement a;

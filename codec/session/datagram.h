@@ -25,6 +25,8 @@ struct Join {
   std::uint64_t nonce = 0;
   std::uint64_t state_limit = 0;   ///< [bytes] DecodeLimits::state_bytes of the client
   std::uint64_t header_limit = 0;  ///< [bytes] DecodeLimits::header_bytes
+  std::uint64_t token = 0;         ///< of the session that the client goes on with; 0: none
+  std::uint8_t seat = 0;           ///< that it wants, from 1; 0: any
   bool is_known = true;            ///< its version; else there is nothing here but the nonce
   friend bool operator==(const Join&, const Join&) = default;
 };
@@ -38,6 +40,7 @@ struct Welcome {
   std::uint64_t size = 0;   ///< [bytes] of the declaration
   std::uint64_t hash = 0;   ///< FNV-1a of its bytes
   std::uint64_t start = 0;  ///< [us] the server's clock at tick 0
+  std::uint64_t world = 0;  ///< what is simulated; 0: not told
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 
@@ -88,6 +91,11 @@ struct StatePart {
   std::uint8_t live = 0;  ///< 1: it holds the declaration, and wants packets
 };
 
+/// What a participant plays.
+struct SeatPart {
+  std::uint8_t seat = 0;  ///< from 1; 0: none
+};
+
 struct HashPart {
   std::uint8_t substream = 0;
   std::uint16_t number = 0;  ///< of the packet, modulo 2^16
@@ -116,10 +124,10 @@ struct PacketPart {
   std::span<const std::uint8_t> bytes;
 };
 
-/// In the order of their types, 1..8; but PacePart, ReportPart and BaselinesPart have those of ButtonsPart, PiecePart and StatePart, in the
-/// other direction.
+/// In the order of their types, 1..8; but PacePart, ReportPart, SeatPart and BaselinesPart have those of ButtonsPart, PiecePart, StatePart
+/// and HashPart, in the other direction.
 using Part = std::variant<Acknowledgement, ClockPart, ButtonsPart, PiecePart, StatePart, HashPart, FragmentPart, PacketPart,
-                          PacePart, ReportPart, BaselinesPart>;
+                          PacePart, ReportPart, SeatPart, BaselinesPart>;
 
 /// Parts one after the other. Those for later versions are skipped.
 class PartReader {

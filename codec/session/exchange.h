@@ -107,6 +107,10 @@ class Exchange {
 
   std::uint64_t heard_at() const noexcept { return heard_at_; }  ///< [us] when the newest datagram came
   std::uint64_t sent_at() const noexcept { return sent_at_; }    ///< [us] when the last one went
+  /// [us] since when an answer is missing; nothing: none is
+  std::optional<std::uint64_t> unanswered() const noexcept {
+    return asked_ > sent_.highest_acknowledged() ? std::optional(progress_at_) : std::nullopt;
+  }
   std::uint64_t asked_at() const noexcept { return asked_at_; }  ///< [us] when the last one went that must be acknowledged
   void hold_tick() noexcept { ++traffic_.ticks_held; }           ///< instead of submit(): nothing may be sent
   const SentNumbers& sent() const noexcept { return sent_; }

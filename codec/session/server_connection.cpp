@@ -41,6 +41,8 @@ void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedSc
   wrong_states_ = 0;
   congestion_ = Congestion(most_widening_);
   welcome_.serial = 0;
+  token_ = epoch;
+  seat_ = 0;
   begin_epoch(served, epoch, now);
 }
 
@@ -55,7 +57,8 @@ void ServerConnection::begin_epoch(const ServedScene& served, std::uint64_t epoc
               .client = client_,
               .size = served.declaration->size(),
               .hash = served.hash,
-              .start = served.start};
+              .start = served.start,
+              .world = served.world};
   exchange_.emplace(Direction::down, epoch, now);
   exchange_->pieces.emplace(served.declaration);
   repeats_welcome_ = replaces;
@@ -66,6 +69,14 @@ void ServerConnection::begin_epoch(const ServedScene& served, std::uint64_t epoc
   pace_.reset();
   next_tick_ = 0;
   buttons_ = {};
+  seat(seat_);
+  seat_waits_ = seat_ != 0;
+}
+
+void ServerConnection::seat(std::uint8_t seat) noexcept {
+  seat_waits_ = seat_waits_ || seat != seat_;
+  seat_ = seat;
+  seat_at_ = seat_number_ = 0;
 }
 
 bool ServerConnection::leave(SessionEvent event, LeaveReason reason) noexcept {
@@ -112,7 +123,9 @@ Result<void> ServerConnection::handle_datagram(std::uint64_t now, std::span<cons
   if (device_clock_) device_clock_->heard(heard->number, heard->tick, now);
   if (device_clock_ && heard->round_trip) device_clock_->measured(*heard->round_trip, now);
   if (pace_ && heard->tick) pace_->heard(*heard->tick);
-  if (pace_) pace_->acknowledged(exchange_->sent().highest_acknowledged());
+  const std::uint64_t newest = exchange_->sent().highest_acknowledged();
+  if (pace_) pace_->acknowledged(newest);
+  if (seat_number_ > 0 && newest >= seat_number_) seat_waits_ = false;  // all since the first have it
   return {};
 }
 
@@ -125,7 +138,7 @@ void ServerConnection::measured(std::int64_t sample, std::uint64_t now) noexcept
 
 Result<void> ServerConnection::handle(const Part& part, std::uint64_t now) noexcept {
   if (const auto* state = std::get_if<StatePart>(&part)) {
-    if (state->live != 0 && exchange_->pieces && exchange_->pieces->is_done()) return go_live(now);
+    if (state->live != 0 && exchange_->pieces) return go_live(now);
   } else if (const auto* buttons = std::get_if<ButtonsPart>(&part)) {
     if (buttons->tick >= buttons_.tick) buttons_ = *buttons;
   } else if (const auto* hash = std::get_if<HashPart>(&part)) {
@@ -227,9 +240,10 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
   if (held_) return std::nullopt;  // an acknowledgement would say that what the client has is new
   if (now >= piece_at_) piece_at_ = exchange_->next_send(now);
   const bool piece = wants_piece(now);
-  const auto datagram = exchange_->poll(now, piece || wants_pace(now), [&](DatagramWriter& writer, std::uint64_t number) {
-    if (now >= clock_at_ && !writer.empty()) {  // together with an acknowledgement
-      writer.add(ClockPart{now});
+  const bool wanted = piece || wants_pace(now) || wants_seat(now);
+  const auto datagram = exchange_->poll(now, wanted, [&](DatagramWriter& writer, std::uint64_t number) {
+    if (served_.shift && now >= clock_at_ && !writer.empty()) {  // together with an acknowledgement
+      writer.add(ClockPart{now - static_cast<std::uint64_t>(*served_.shift)});
       clock_at_ = now + (exchange_->path ? kDrivenClockEvery : kClockEvery);
     }
     const bool pace = pace_ && pace_->waits();
@@ -237,14 +251,12 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
       pace_->tell(writer, number);
       pace_at_ = now + exchange_->patience();
     }
-    if (!piece) return tell_baselines(writer, number) || pace;
-    const std::uint64_t index = *exchange_->pieces->next(now, exchange_->patience());
-    if (!writer.add(PiecePart{index, exchange_->pieces->bytes(index)})) return false;
-    exchange_->pieces->sent(index, number, now);
-    piece_at_ = now + std::max(kPieceEvery, piece_time_);
-    return true;
+    if (piece) add_piece(writer, number, now);
+    if (seat_waits_) add_seat(writer, number, now);
+    const bool baselines = tell_baselines(writer, number);
+    return pace || piece || seat_waits_ || baselines;
   });
-  if (datagram && !piece) bucket_.take(static_cast<std::int64_t>(8 * (datagram->size() + headers_)));
+  if (datagram && !piece) bucket_.take(static_cast<std::int64_t>(8 * (datagram->size() + headers_)), now);
   return datagram;
 }
 
@@ -256,6 +268,20 @@ bool ServerConnection::tell_baselines(DatagramWriter& writer, std::uint64_t numb
   return true;
 }
 
+/// pre  there is one
+void ServerConnection::add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept {
+  const std::uint64_t index = *exchange_->pieces->next(now, exchange_->patience());
+  if (!writer.add(PiecePart{index, exchange_->pieces->bytes(index)})) return;
+  exchange_->pieces->sent(index, number, now);
+  piece_at_ = now + std::max(kPieceEvery, piece_time_);
+}
+
+void ServerConnection::add_seat(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept {
+  writer.add(SeatPart{seat_});
+  seat_at_ = now + exchange_->patience();
+  if (seat_number_ == 0) seat_number_ = number;
+}
+
 std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
   if (state_ == SessionState::closed) return std::nullopt;
   std::uint64_t due = exchange_->heard_at() + (proven_ ? silence_ : kUnproven);
@@ -263,6 +289,7 @@ std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
   if (held_ || !exchange_->sent().next()) return due;  // nothing else may be said, or there is no number left
   if (const auto acknowledgement = exchange_->due()) due = std::min(due, *acknowledgement);
   if (pace_ && pace_->waits()) due = std::min(due, pace_at_);
+  if (seat_waits_) due = std::min(due, seat_at_);
   if (proven_ && exchange_->pieces) {
     if (exchange_->pieces->next(piece_at_, exchange_->patience())) due = std::min(due, piece_at_);
     else if (const auto lost = exchange_->pieces->due(exchange_->patience())) due = std::min(due, *lost);
@@ -294,6 +321,8 @@ ClientStatus ServerConnection::status() const noexcept {
                    .peer = peer_,
                    .state = state_,
                    .role = join_.role,
+                   .seat = seat_,
+                   .wanted_seat = join_.seat,
                    .heard = 0,
                    .round_trip = {},
                    .loss = 0,

@@ -23,6 +23,9 @@ struct ServedScene {
   std::shared_ptr<const std::vector<std::uint8_t>> declaration;
   std::uint64_t hash = 0;   ///< of the declaration
   std::uint64_t start = 0;  ///< [us] at tick 0
+  std::uint64_t world = 0;
+  std::optional<std::int64_t>
+      shift{};  ///< [us] the program's clock less the one that clients are told; none before the first tick
   SenderOptions sender;
 
   /// Within the limits of a client.
@@ -38,12 +41,17 @@ class ServerConnection {
   std::uint16_t client() const noexcept { return client_; }
   std::uint64_t peer() const noexcept { return peer_; }  ///< 0: none
   std::uint64_t nonce() const noexcept { return join_.nonce; }
+  std::uint64_t token() const noexcept { return token_; }
   const Join& join() const noexcept { return join_; }
   SessionState state() const noexcept { return state_; }
   bool is_free() const noexcept { return state_ == SessionState::closed && leaves_ == 0; }
   const Welcome& welcome() const noexcept { return welcome_; }
 
   void open(std::uint64_t peer, const Join& said, const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
+  void move(std::uint64_t peer) noexcept { peer_ = peer; }
+  void seat(std::uint8_t seat) noexcept;
+  void shift(std::int64_t shift) noexcept { served_.shift = shift; }
+  bool is_outdated() const noexcept { return outdated_; }
   /// A new scene waits until the client has spoken in the epoch that it was welcomed to: no other welcome can reach it before.
   void outdate() noexcept { outdated_ = true; }
   bool needs_epoch() const noexcept { return outdated_ && proven_ && state_ != SessionState::closed; }
@@ -84,8 +92,11 @@ class ServerConnection {
   std::optional<DeviceSample> driving_device(std::uint64_t now) noexcept;
   bool tell_baselines(DatagramWriter& writer, std::uint64_t number) noexcept;
   bool wants_pace(std::uint64_t now) const noexcept { return pace_ && pace_->waits() && now >= pace_at_; }
+  bool wants_seat(std::uint64_t now) const noexcept { return seat_waits_ && now >= seat_at_; }
   bool wants_piece(std::uint64_t now) const noexcept;
   bool wants_welcome(std::uint64_t now) const noexcept;
+  void add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
+  void add_seat(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
 
   bool repairs() const noexcept {
     return loss_ == LossPolicy::repair || (loss_ == LossPolicy::by_role && join_.role == Role::observer);
@@ -96,7 +107,7 @@ class ServerConnection {
   std::uint64_t silence_, headers_, piece_time_;  // [us], [bytes] around a datagram, [us] of a piece at the rate
   double most_widening_;
   SessionState state_ = SessionState::closed;
-  std::uint64_t peer_ = 0;
+  std::uint64_t peer_ = 0, token_ = 0;
   Join join_;
   Welcome welcome_;
   ServedScene served_;
@@ -123,6 +134,9 @@ class ServerConnection {
   ButtonsPart buttons_;
   bool tells_baselines_ = false;        // the client does not know yet that they are the acknowledged ones
   std::uint64_t baselines_number_ = 0;  // of the first datagram that said so
+  std::uint8_t seat_ = 0;
+  bool seat_waits_ = false;                      // for an acknowledgement
+  std::uint64_t seat_at_ = 0, seat_number_ = 0;  // [us] when it goes again; of the first datagram with it, 0: none yet
 };
 
 }  // namespace tactus

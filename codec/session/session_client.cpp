@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <tactus/base/rule.h>
@@ -22,6 +23,7 @@ constexpr std::uint64_t kSeldom = 2;  // times these, of a client that works out
 constexpr std::uint32_t kSomeLoss = 65536 / 50;
 constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
 constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
+constexpr std::uint64_t kUnanswered = 400'000;   // [us] at least, until a client joins again
 constexpr std::uint64_t kAsleep = 100'000;       // [us] without a call: the program, or its machine, stood still
 constexpr std::uint64_t kStuck = 500'000;        // [us] that packets wait for one that is missing before a key packet is asked for
 constexpr unsigned kLeaves = 3;                  // one of them should arrive
@@ -54,6 +56,7 @@ struct SessionClient::Impl {
   void play(const Exchange::Heard& heard, std::uint64_t now) noexcept;
   bool is_stuck(std::uint64_t now) const noexcept;
   std::uint64_t sign_due() const noexcept;
+  std::uint64_t rejoin_due() const noexcept;
   bool has_buttons_due(std::uint64_t now) const noexcept;
   Epoch* shown_epoch() const noexcept { return shown ? shown.get() : current.get(); }
   void look(std::uint64_t now) noexcept;
@@ -63,8 +66,10 @@ struct SessionClient::Impl {
 
   SessionClientOptions options;
   SessionState state = SessionState::closed;
-  std::uint64_t nonce = 0;
+  std::uint64_t nonce = 0, token = 0;
   std::uint64_t opened_at = 0, join_at = 0, retry = 0;
+  bool rejoins = false;  // a join went in this silence
+  std::uint8_t seat = 0;
   std::uint64_t looked_at = 0;     // [us] of the last call
   std::unique_ptr<Epoch> current;  // the newest
   std::unique_ptr<Epoch> shown;    // the one before, until the newest is live
@@ -115,9 +120,12 @@ void SessionClient::Impl::close(SessionEvent event, LeaveReason reason) noexcept
   note({.kind = ClientEvent::Kind::closed, .reason = reason});
 }
 
-void SessionClient::open(std::uint64_t now, std::uint64_t nonce) noexcept {
+void SessionClient::open(std::uint64_t now, std::uint64_t nonce, std::uint64_t token) noexcept {
   if (!impl_->go(SessionEvent::open)) return;
   impl_->nonce = nonce;
+  impl_->token = token;
+  impl_->seat = 0;
+  impl_->rejoins = false;
   impl_->opened_at = impl_->join_at = now;
   impl_->retry = kFirstRetry;
   impl_->leaves = 0;
@@ -155,7 +163,8 @@ Result<void> SessionClient::handle_datagram(std::uint64_t now, std::span<const s
 }
 
 Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& said) noexcept try {
-  const bool repeated = current && said.serial <= current->welcome.serial && state != SessionState::joining;
+  const bool anew = rejoins && said.serial == 0 && said.epoch != token;  // the server does not know the session
+  const bool repeated = current && said.serial <= current->welcome.serial && state != SessionState::joining && !anew;
   if (repeated || !next_state(client_transitions(), state, SessionEvent::welcomed)) return {};
   const bool too_large = said.size > options.limits.header_bytes;
   Welcome taken = said;
@@ -168,8 +177,13 @@ Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& sai
     close(SessionEvent::rejected, LeaveReason::limits);
     return {};
   }
+  if (said.serial == 0) {
+    token = said.epoch;
+    seat = 0;
+  }
+  offset = {};
   sign_at = live_number = 0;
-  feels = false;
+  feels = rejoins = false;
   hash.reset();
   buttons = {};
   buttons_wait = false;
@@ -184,6 +198,7 @@ Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& said
   TACTUS_TRY(const Exchange::Heard heard, current->exchange.handle(now, said, take_part));
   if (heard.hash) hash = heard.hash;
   if (heard.tick) packet_at = now;
+  rejoins = rejoins && current->exchange.unanswered();
   if (current->playout) play(heard, now);
   if (buttons_wait && current->exchange.sent().highest_acknowledged() >= buttons_number && buttons_number > 0)
     buttons_wait = false;
@@ -202,6 +217,8 @@ Result<void> SessionClient::Impl::take(const Part& part, const Exchange::Heard& 
     current->exchange.expect(baselines->policy == 0);
   } else if (const auto* pace = std::get_if<PacePart>(&part)) {
     if (current->exchange.path) current->exchange.path->shift(pace->from, pace->offset);
+  } else if (const auto* told = std::get_if<SeatPart>(&part)) {
+    seat = told->seat;
   }
   return {};
 }
@@ -280,6 +297,13 @@ std::uint64_t SessionClient::Impl::sign_due() const noexcept {
   return current->exchange.next_send(sent + pause);
 }
 
+/// When a client without an answer joins again.   pre  receiving or live
+std::uint64_t SessionClient::Impl::rejoin_due() const noexcept {
+  const auto since = current->exchange.unanswered();
+  if (!since) return std::numeric_limits<std::uint64_t>::max();
+  return rejoins ? join_at : *since + std::max(kUnanswered, 2 * current->exchange.patience());
+}
+
 bool SessionClient::Impl::has_buttons_due(std::uint64_t now) const noexcept {
   return buttons_wait && now >= current->exchange.next_send(buttons_at);
 }
@@ -320,12 +344,15 @@ std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::u
     return in.writer.write(Leave{in.leaving}, in.current->exchange.epoch());
   }
   if (in.state == SessionState::closed) return std::nullopt;
-  if (in.state == SessionState::joining) {
-    if (now < in.join_at) return std::nullopt;
+  const bool joins = in.state == SessionState::joining;
+  if (now >= (joins ? in.join_at : in.rejoin_due())) {
+    if (!joins && !std::exchange(in.rejoins, true)) in.retry = kFirstRetry;
     in.join_at = now + in.retry;
     in.retry = std::min(2 * in.retry, kLastRetry);
-    return in.writer.write(Join{in.options.role, in.nonce, in.options.limits.state_bytes, in.options.limits.header_bytes});
+    const DecodeLimits& limits = in.options.limits;
+    return in.writer.write(Join{in.options.role, in.nonce, limits.state_bytes, limits.header_bytes, in.token, in.options.seat});
   }
+  if (joins) return std::nullopt;
   const bool sign = now >= in.sign_due(), buttons = in.has_buttons_due(now);
   return in.current->exchange.poll(now, sign || buttons, [&](DatagramWriter& writer, std::uint64_t number) {
     if (in.buttons_wait) {
@@ -358,6 +385,7 @@ std::optional<std::uint64_t> SessionClient::next_timeout() const noexcept {
   if (in.state == SessionState::closed) return std::nullopt;
   if (in.state == SessionState::joining) return std::min(in.join_at, in.opened_at + kJoinFor);
   std::uint64_t due = in.current->exchange.heard_at() + in.options.silence;
+  due = std::min(due, in.rejoin_due());
   if (!in.current->exchange.sent().next()) return due;  // there is no number left to say anything with
   due = std::min(due, in.sign_due());
   if (in.buttons_wait) due = std::min(due, in.current->exchange.next_send(in.buttons_at));
@@ -400,6 +428,11 @@ double SessionClient::force_share(std::uint64_t now) noexcept {
   return std::ldexp(static_cast<double>(in.fade.share(now, heard, round_trip_shown(now).value_or(0))), -16);
 }
 
+std::uint64_t SessionClient::unanswered(std::uint64_t now) const noexcept {
+  const bool runs = impl_->current != nullptr && impl_->state != SessionState::closed;
+  return runs ? now - std::min(now, impl_->current->exchange.unanswered().value_or(now)) : 0;
+}
+
 SessionStatus SessionClient::status() const noexcept {
   const Impl& in = *impl_;
   SessionStatus out;
@@ -408,6 +441,9 @@ SessionStatus SessionClient::status() const noexcept {
   if (!in.current) return out;
   const Epoch& epoch = *in.current;
   out.client = epoch.welcome.client;
+  out.seat = in.seat;
+  out.world = epoch.welcome.world;
+  out.token = in.token;
   out.declaration = epoch.pieces.size();
   out.received = std::min(epoch.pieces.received(), out.declaration);
   out.start = epoch.welcome.start;

@@ -21,6 +21,9 @@ namespace tactus {
 struct SessionStatus {
   SessionState state = SessionState::closed;
   std::uint16_t client = 0;
+  std::uint8_t seat = 0;                        ///< what a participant plays, from 1; 0: nothing
+  std::uint64_t world = 0;                      ///< what the server simulates; 0: not told
+  std::uint64_t token = 0;                      ///< with which another client goes on with this session; 0: none yet
   std::uint64_t declaration = 0, received = 0;  ///< [bytes] of the scene declaration, in all and so far
   std::uint64_t start = 0;                      ///< [us] the server's clock at tick 0
   std::optional<RoundTrip> round_trip;
@@ -46,8 +49,9 @@ class SessionClient {
   /// err  as Sender::create: R-API-4 a bound of the device
   static Result<SessionClient> create(const SessionClientOptions& options);
 
-  /// Join.   in  nonce  64 bits from the system   pre  closed
-  void open(std::uint64_t now, std::uint64_t nonce) noexcept;
+  /// Join. Without an answer the client joins again by itself: its address may be another one, or the server may have begun anew.
+  /// in   nonce  64 bits from the system;  token  of a session that ended without the server's knowledge; 0: none     pre  closed
+  void open(std::uint64_t now, std::uint64_t nonce, std::uint64_t token = 0) noexcept;
   void close() noexcept;
 
   /// err  the datagram is dropped, and nothing has changed but the traffic: checksum R-SES-1; those of R-SES rules
@@ -71,6 +75,7 @@ class SessionClient {
   /// Share of a force that may be rendered: without news none.   out  0 to 1
   double force_share(std::uint64_t now) noexcept;
   SessionStatus status() const noexcept;
+  std::uint64_t unanswered(std::uint64_t now) const noexcept;  ///< [us] for how long an answer of the server is missing
 
   SessionClient(SessionClient&&) noexcept;
   SessionClient& operator=(SessionClient&&) noexcept;

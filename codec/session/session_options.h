@@ -115,6 +115,7 @@ struct SessionServerOptions {
   /// 1: they never do, and the states that do not fit are left out.
   double widening = 8;
   std::uint64_t silence = 120'000'000;  ///< [us] after which a client counts as gone
+  std::uint64_t world = 0;              ///< what is simulated, as the clients' programs find it, too; 0: not told
 };
 
 struct SessionClientOptions {
@@ -124,6 +125,7 @@ struct SessionClientOptions {
   DeviceCoding device{};                ///< of a participant
   bool senses_velocity = false;         ///< the samples of the device have one
   std::uint64_t silence = 120'000'000;  ///< [us] after which the server counts as gone
+  std::uint8_t seat = 0;                ///< that a participant wants, from 1; 0: any
 };
 
 }  // namespace tactus

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
 #include <tactus/base/bytes.h>
@@ -16,7 +17,9 @@ namespace tactus {
 struct SessionServer::Impl {
   Result<void> serve(SharedScene of, std::uint64_t now);
   Result<void> join(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept;
+  void keep_time(std::uint64_t now, std::int64_t tick) noexcept;
   ServerConnection* find(std::uint64_t peer) noexcept;
+  ServerConnection* follow(std::uint64_t peer, std::uint64_t token) noexcept;
   void note(ServerEvent event) noexcept {
     if (events.size() < events.capacity()) events.push_back(event);
   }
@@ -77,6 +80,8 @@ Result<void> SessionServer::Impl::serve(SharedScene of, std::uint64_t now) {
             .declaration = std::make_shared<const std::vector<std::uint8_t>>(std::move(declaration)),
             .hash = hash.value(),
             .start = now,
+            .world = options.world,
+            .shift = {},
             .sender = options.sender};
   return {};
 }
@@ -104,6 +109,17 @@ void SessionServer::Impl::drop(ServerConnection& connection, SessionEvent event,
   note({.kind = ServerEvent::Kind::left, .client = connection.client(), .reason = reason});
 }
 
+/// The session of this address, or of this token, which is at this address from now on; null: there is none.
+ServerConnection* SessionServer::Impl::follow(std::uint64_t peer, std::uint64_t token) noexcept {
+  ServerConnection* const here = find(peer);
+  const auto known = std::ranges::find_if(
+      connections, [token](const auto& c) { return token != 0 && c->token() == token && c->state() != SessionState::closed; });
+  if (known == connections.end() || known->get() == here) return here;
+  if (here != nullptr) drop(*here, SessionEvent::left, LeaveReason::bye);
+  (*known)->move(peer);
+  return known->get();
+}
+
 /// A place for the client, or why there is none.
 Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept {
   const auto refuse = [&](LeaveReason reason) { reply.emplace(peer, Refusal{said.nonce, reason}); };
@@ -111,8 +127,10 @@ Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, co
     refuse(LeaveReason::version);
     return {};
   }
-  ServerConnection* place = find(peer);
+  const bool is_here = find(peer) != nullptr;
+  ServerConnection* place = follow(peer, said.token);
   if (place != nullptr && place->state() != SessionState::closed && place->nonce() == said.nonce) {
+    if (!is_here) note({.kind = ServerEvent::Kind::moved, .client = place->client()});
     reply.emplace(peer, place->welcome());
     return {};
   }
@@ -161,7 +179,24 @@ void SessionServer::handle_timeout(std::uint64_t now) noexcept {
     if (connection->is_silent(now)) impl_->drop(*connection, SessionEvent::silent, LeaveReason::silence);
 }
 
+/// Clients are told a clock by which tick n is at `start` + n ticks, whenever the program began and however long it paused.
+void SessionServer::Impl::keep_time(std::uint64_t now, std::int64_t tick) noexcept {
+  constexpr std::int64_t kPause = 100'000;  // [us]: less is unevenness of the ticks
+  const std::int64_t rate = served.scene->tick_rate;
+  const std::int64_t time = tick / rate * 1'000'000 + tick % rate * 1'000'000 / rate;
+  const std::int64_t shift = static_cast<std::int64_t>(now - served.start) - time;
+  if (served.shift && std::abs(shift - *served.shift) <= kPause) return;
+  served.shift = shift;
+  for (auto& connection : connections)
+    if (!connection->is_outdated()) connection->shift(shift);
+}
+
+std::uint64_t SessionServer::clock(std::uint64_t now) const noexcept {
+  return now - static_cast<std::uint64_t>(impl_->served.shift.value_or(0));
+}
+
 Result<void> SessionServer::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {
+  impl_->keep_time(now, tick);
   Result<void> first;
   for (auto& connection : impl_->connections) {
     if (connection->state() != SessionState::live) continue;
@@ -172,6 +207,8 @@ Result<void> SessionServer::submit(std::uint64_t now, std::int64_t tick, const T
   }
   return first;
 }
+
+void SessionServer::seat(std::uint16_t client, std::uint8_t seat) noexcept { impl_->connections[client]->seat(seat); }
 
 void SessionServer::close(std::uint16_t client, LeaveReason reason) noexcept {
   impl_->drop(*impl_->connections[client], SessionEvent::close, reason);

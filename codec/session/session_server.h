@@ -30,7 +30,8 @@ struct ClientStatus {
   std::uint64_t peer = 0;
   SessionState state = SessionState::closed;
   Role role = Role::observer;
-  std::uint64_t heard = 0;  ///< [us] when its newest datagram came
+  std::uint8_t seat = 0, wanted_seat = 0;  ///< from 1; 0: none, any
+  std::uint64_t heard = 0;                 ///< [us] when its newest datagram came
   std::optional<RoundTrip> round_trip;
   double loss = 0;      ///< share of the last 256 datagrams to the client
   double widening = 1;  ///< factor of the bounds now
@@ -43,6 +44,7 @@ struct ServerEvent {
     joined,   ///< and gets the declaration
     live,     ///< holds it
     left,     ///< for `reason`
+    moved,    ///< its address is another one: ClientStatus::peer
     widened,  ///< its bounds are multiplied by `widening` from now on
   };
   Kind kind = Kind::joined;
@@ -54,7 +56,7 @@ struct ServerEvent {
 /// Threads: one at a time. No call on the way of a datagram allocates but those that bring a client live; none throws.
 class SessionServer {
  public:
-  /// in   entropy  64 bits from the system, that nobody else can tell;  now  [us], the time of tick 0. Epochs are drawn from them so that who has one could
+  /// in   entropy  64 bits from the system, that nobody else can tell. Epochs are drawn from them so that who has one could
   ///               work out the next: without the seal, clients of one server trust each other
   /// err  as Sender::create; invalid_argument R-API-4: no client, or more than 65535
   static Result<SessionServer> create(SharedScene scene, const SessionServerOptions& options, std::uint64_t entropy,
@@ -64,12 +66,16 @@ class SessionServer {
   /// err  the datagram is dropped, and nothing has changed but the traffic: checksum R-SES-1; those of R-SES rules
   Result<void> handle_datagram(std::uint64_t now, std::uint64_t peer, std::span<const std::uint8_t> datagram) noexcept;
   void handle_timeout(std::uint64_t now) noexcept;
-  /// Code a tick for every live client. Tick n is the state at the time of create(), or replace_scene(), + n ticks: whoever misses some
-  /// leaves out numbers, or makes them at once.   time that of Sender::encode for each client
+  /// Code a tick for every live client. Ticks are times of the scene: whoever misses some leaves out numbers, or makes them at once; who
+  /// pauses for more than 100 ms may go on with the next number.   time that of Sender::encode for each client
   /// err  as Sender::encode, the first; all clients that can are served
   Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;
+  /// [us] The clock that clients are told: by it tick n is at create() or replace_scene() + n ticks. Before the first tick that of the program.
+  std::uint64_t clock(std::uint64_t now) const noexcept;
   /// Another scene: clients get a new epoch, and show the old one until they hold the new. Ticks begin anew.   err  as create()
   Result<void> replace_scene(SharedScene scene, std::uint64_t now);
+  /// What a participant plays, from 1; 0: nothing. It is told. Who comes back with the token of its session has the seat that it had.
+  void seat(std::uint16_t client, std::uint8_t seat) noexcept;
   /// Take leave of a client, or of all.
   void close(std::uint16_t client, LeaveReason reason) noexcept;
   void close() noexcept;

@@ -256,7 +256,7 @@ std::int64_t PlayoutClock::shown(std::uint64_t now) noexcept {
   return shown_;
 }
 
-std::int64_t PlayoutClock::ahead() const noexcept { return std::max<std::int64_t>(0, time_of(shown_) - news_); }
+std::int64_t PlayoutClock::ahead() const noexcept { return shown_ < 0 ? 0 : std::max<std::int64_t>(0, time_of(shown_) - news_); }
 
 std::optional<std::int64_t> PlayoutClock::behind(std::uint64_t now) const noexcept {
   const auto base = base_.value();

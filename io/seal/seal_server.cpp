@@ -229,7 +229,7 @@ void Server::Impl::step(std::uint64_t now, Peer& peer) {
 
 /// The handshake is done.
 void Server::Impl::settle(std::uint64_t now, std::unique_ptr<Peer> peer) {
-  if (const auto old = find(peers, peer->at); old != peers.end()) forget((*old)->id);
+  if (const auto old = find(peers, peer->at); old != peers.end()) peers.erase(old);  // its session may go on, by another name
   if (peers.size() >= options.peers) {
     say(peer->at, peer->link->close());
     return;
@@ -300,6 +300,11 @@ std::optional<std::uint64_t> Server::poll_closed() noexcept {
   const std::uint64_t id = in.closed.front();
   in.closed.pop_front();
   return id;
+}
+
+net::Address Server::address_of(std::uint64_t peer) const noexcept {
+  const auto found = find(impl_->peers, peer);
+  return found == impl_->peers.end() ? net::Address() : (*found)->at;
 }
 
 std::size_t Server::peers() const noexcept { return impl_->peers.size(); }

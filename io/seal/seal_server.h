@@ -49,8 +49,9 @@ class Server {
   void keep_only(std::uint64_t now, const std::function<bool(std::uint64_t peer)>& is_needed);
   void close() noexcept;  ///< all
 
-  std::optional<net::Transmit> poll_datagram() noexcept;  ///< valid until the next call
-  std::optional<std::uint64_t> poll_closed() noexcept;    ///< a peer whose association is no more
+  std::optional<net::Transmit> poll_datagram() noexcept;       ///< valid until the next call
+  std::optional<std::uint64_t> poll_closed() noexcept;         ///< a peer that closed its association
+  net::Address address_of(std::uint64_t peer) const noexcept;  ///< none: unknown
   std::size_t peers() const noexcept;
   std::size_t handshakes() const noexcept;  ///< that go on
   Counters counters() const noexcept;

@@ -54,7 +54,12 @@ class SessionNetwork final : public Network {
   void leave() noexcept;
 
   SessionClient& client(std::size_t user) noexcept { return *users_[user].client; }
-  SessionStatus status(std::size_t user) const noexcept { return users_[user].client->status(); }
+  /// The offset is that of the clock of both ends, which is one, not of that which the server tells.
+  SessionStatus status(std::size_t user) const noexcept {
+    SessionStatus out = users_[user].client->status();
+    if (out.clock_offset) *out.clock_offset += static_cast<std::int64_t>(now_ - server_->clock(now_));
+    return out;
+  }
   SessionServer& server() noexcept { return *server_; }
   std::uint64_t now() const noexcept { return now_; }      ///< [us] on the clock of both ends
   std::uint64_t start() const noexcept { return start_; }  ///< [us] of tick 0

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <span>
 
+#include <tactus/base/bytes.h>
 #include <tactus/base/rule.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/sim/scene/deformable_reader.h>
@@ -277,6 +279,19 @@ void refuse_paths(TomlReader& in, const toml::table& root) {
 
 tl::expected<Scene, Diagnostic> parse_scene(std::string_view text, std::string_view file) {
   return parse_beside(text, file, std::filesystem::path(file).parent_path(), [](TomlReader&, const toml::table&) {});
+}
+
+std::uint64_t fingerprint(const Scene& scene) noexcept {
+  Fnv1a hash;
+  for (const char c : scene.text)
+    if (c != '\r') hash.add_byte(static_cast<std::uint8_t>(c));
+  const auto add = [&](std::span<const Vec3> points) {
+    for (const Vec3& point : points)
+      for (const double x : {point.x, point.y, point.z}) hash.add64(std::bit_cast<std::uint64_t>(x));
+  };
+  for (const SceneObject& object : scene.objects) add(object.surface.vertices);
+  for (const SceneDeformable& object : scene.deformables) add(object.mesh.vertices);
+  return hash.value() == 0 ? 1 : hash.value();
 }
 
 tl::expected<Scene, Diagnostic> load_scene(const std::string& path) {

@@ -167,6 +167,9 @@ tl::expected<Scene, Diagnostic> parse_attached_scene(std::string_view text);
 /// Path of a scene: `name` itself if it is a file, else <name>.toml among the scenes that come with Tactus.   err  R-SCN-1
 tl::expected<std::string, Diagnostic> find_scene(const std::string& name);
 
+/// Of the file and the meshes that it names: equal for equal scenes, else almost certainly different; never 0.
+std::uint64_t fingerprint(const Scene& scene) noexcept;
+
 /// All hands take `pace` times their time, and the scene lasts as much longer or shorter.   pre  pace > 0
 void set_pace(Scene& scene, double pace) noexcept;
 /// [m] RMS per axis, of all hands.

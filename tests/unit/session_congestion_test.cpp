@@ -154,7 +154,7 @@ std::int64_t passed(std::uint64_t rate, std::int64_t bits, std::uint64_t every) 
   std::int64_t out = 0;
   for (std::uint64_t now = 1'000'000; now < 11'000'000; now += every) {
     if (!bucket.is_open(now)) continue;
-    bucket.take(bits);
+    bucket.take(bits, now);
     out += bits;
   }
   return out;
@@ -174,7 +174,7 @@ TEST(TokenBucket, HoldsWhat50MillisecondsBring) {
   TokenBucket bucket(1'000'000);
   ASSERT_TRUE(bucket.is_open(3'600'000'000));
   std::int64_t burst = 0;
-  for (; bucket.is_open(3'600'000'000); burst += 1000) bucket.take(1000);
+  for (; bucket.is_open(3'600'000'000); burst += 1000) bucket.take(1000, 3'600'000'000);
   EXPECT_EQ(burst, 50'000);
   EXPECT_FALSE(bucket.is_open(3'600'000'000));
   EXPECT_TRUE(bucket.is_open(3'600'000'001));
@@ -182,16 +182,25 @@ TEST(TokenBucket, HoldsWhat50MillisecondsBring) {
 
 TEST(TokenBucket, ADebtIsPaid) {
   TokenBucket bucket(1'000'000);
-  bucket.take(60'000);
+  bucket.take(60'000, 0);
   EXPECT_FALSE(bucket.is_open(10'000));
   EXPECT_TRUE(bucket.is_open(10'001));
+}
+
+TEST(TokenBucket, ADebtIsPaidWhileNobodyAsksWhetherItIsOpen) {
+  TokenBucket bucket(1'000'000);
+  for (std::uint64_t now = 0; now < 10'000'000; now += 1000) bucket.take(990, now);  // acknowledgements of a long join
+  EXPECT_TRUE(bucket.is_open(10'000'000));
+  bucket.take(2'000'000, 10'000'000);
+  EXPECT_FALSE(bucket.is_open(11'900'000)) << "a debt is not forgotten either";
+  EXPECT_TRUE(bucket.is_open(12'000'001));
 }
 
 TEST(TokenBucket, WithoutARateAllPasses) {
   TokenBucket bucket(0);
   for (std::uint64_t now = 0; now < 1000; ++now) {
     ASSERT_TRUE(bucket.is_open(now));
-    bucket.take(std::int64_t{1} << 40);
+    bucket.take(std::int64_t{1} << 40, now);
   }
 }
 
@@ -199,7 +208,7 @@ TEST(TokenBucket, TheLargestRateDoesNotOverflow) {
   TokenBucket bucket(1'000'000'000'000);
   for (std::uint64_t now = 0; now < 10'000'000; now += 49'999) {
     ASSERT_TRUE(bucket.is_open(now));
-    bucket.take(9600);
+    bucket.take(9600, now);
   }
 }
 

@@ -2,6 +2,7 @@
 /// A server and its clients over links that delay and lose, in virtual time.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -24,6 +25,7 @@ class SessionWorld {
     std::vector<ClientEvent> events;
     bool silent = false;      // the program has died: it neither hears nor says anything
     std::uint64_t clock = 0;  // [us] that of the client is ahead of the server's
+    std::uint64_t peer = 0;   // its address
   };
 
   SessionWorld(const SharedScene& scene, const SessionServerOptions& options, std::uint64_t entropy = 77)
@@ -31,14 +33,15 @@ class SessionWorld {
         rate(scene->tick_rate) {}
 
   /// in   clock  [us] that of the client is ahead of the server's
-  End& add(const SessionClientOptions& options, const sim::LinkOptions& up, const sim::LinkOptions& down,
-           std::uint64_t clock = 0) {
+  End& add(const SessionClientOptions& options, const sim::LinkOptions& up, const sim::LinkOptions& down, std::uint64_t clock = 0,
+           std::uint64_t token = 0) {
     End& end = ends.emplace_back();
     end.client = std::make_unique<SessionClient>(SessionClient::create(options).value());
     end.up = std::make_unique<sim::Link>(sim::Link::create(up).value());
     end.down = std::make_unique<sim::Link>(sim::Link::create(down).value());
     end.clock = clock;
-    end.client->open(now + clock, 1000 + ends.size());
+    end.peer = ends.size();
+    end.client->open(now + clock, 1000 + ends.size(), token);
     return end;
   }
 
@@ -62,7 +65,8 @@ class SessionWorld {
   void drain() {
     while (const auto datagram = server->poll_datagram(now)) {
       ++datagrams_down;
-      ends[datagram->peer - 1].down->send(static_cast<sim::Microseconds>(now), datagram->bytes);
+      const auto to = std::ranges::find(ends, datagram->peer, &End::peer);
+      if (to != ends.end()) to->down->send(static_cast<sim::Microseconds>(now), datagram->bytes);
     }
     while (const auto event = server->poll_event()) events.push_back(*event);
     for (End& end : ends) {
@@ -78,7 +82,7 @@ class SessionWorld {
   void deliver() {
     for (std::size_t i = 0; i < ends.size(); ++i) {
       while (const auto datagram = ends[i].up->poll(static_cast<sim::Microseconds>(now)))
-        if (!server->handle_datagram(now, i + 1, datagram->bytes)) ++refused;
+        if (!server->handle_datagram(now, ends[i].peer, datagram->bytes)) ++refused;
       while (const auto datagram = ends[i].down->poll(static_cast<sim::Microseconds>(now)))
         if (!ends[i].silent && !ends[i].client->handle_datagram(now + ends[i].clock, datagram->bytes)) ++refused;
       if (!ends[i].silent) ends[i].client->handle_timeout(now + ends[i].clock);

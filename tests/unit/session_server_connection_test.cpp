@@ -95,11 +95,12 @@ TEST(ServerConnection, WhoeverKnowsTheEpochGetsThePieces) {
   EXPECT_EQ(desk.connection.next_timeout(), desk.now + 500);
 }
 
-TEST(ServerConnection, IsNotLiveBeforeTheDeclarationHasArrived) {
+TEST(ServerConnection, IsLiveOnceTheClientSaysSo) {
   Desk desk({}, 10);
-  ASSERT_TRUE(desk.hear({StatePart{1}}));
+  ASSERT_TRUE(desk.hear({StatePart{0}}));
   EXPECT_EQ(desk.connection.state(), SessionState::receiving);
-  desk.go_live();
+  ASSERT_TRUE(desk.hear({StatePart{1}}));
+  EXPECT_EQ(desk.connection.state(), SessionState::live) << "it has checked the hash of all pieces, whatever was acknowledged";
   EXPECT_FALSE(desk.connection.device(desk.now)) << "nothing was heard of the device";
 }
 

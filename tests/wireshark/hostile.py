@@ -23,14 +23,14 @@ from session import CUT, SPARE  # noqa: E402
 UP, DOWN = session.UP, session.DOWN
 SYNTAX = ("R-SES-1", "R-SES-2", "R-SES-3", "R-SES-5", "R-SES-9")
 ORDER = ("malformed", "R-SES-5")
-ONLY = {session.CLOCK: DOWN, session.PIECE: DOWN, session.STATE: UP, session.HASH: UP}
+ONLY = {session.CLOCK: DOWN, session.PIECE: DOWN, session.HASH: UP}
 REASONS = 7
 
 
 # ---- 70, sections 2 to 5: syntax of one datagram of either direction -------------------------------------------------
 def read_part(kind: int, direction: int, e: Cursor) -> None:
     if kind == session.STATE and e.left() == 1:
-        require(e.number(1, CUT) < 2, *SPARE)
+        require(e.number(1, CUT) < 2 or direction == DOWN, *SPARE)
         return
     if kind == session.CLOCK:
         require(e.varint(CUT, SPARE) < session.END_OF_TIME and e.left() == 0, *SPARE)
@@ -76,6 +76,7 @@ def read_handshake(body: bytes, kind: int, direction: int) -> None:
         require(magic == b"TCTS" and (version != 1 or role < 2), "unsupported", "R-SES-9")
         if version != 1 and len(body) >= 76:
             return
+        e.number(8, CUT), e.number(1, CUT)
         e.varint(CUT, SPARE), e.varint(CUT, SPARE)
         require(len(body) >= 76, *CUT)
         require(not any(e.take(e.left(), CUT)), *SPARE)
@@ -83,6 +84,7 @@ def read_handshake(body: bytes, kind: int, direction: int) -> None:
         for size in (8, 0, 8, 2, 0, 8):
             e.number(size, CUT) if size else e.varint(CUT, SPARE)
         require(e.varint(CUT, SPARE) < session.END_OF_TIME, *SPARE)
+        e.number(8, CUT)
     else:
         if kind == session.REFUSAL:
             e.number(8, CUT)
@@ -256,7 +258,7 @@ def check_values(path: pathlib.Path, rng: random.Random) -> str:
     for i, (before, (direction, body), rule) in enumerate(cases):
         client, epoch = ("198.51.100.3", 30000 + i), rng.randrange(1, 1 << 64)
         welcome = session.head(session.HANDSHAKE, session.WELCOME) + bytes(8) + b"\0" + struct.pack("<QH", epoch, 0)
-        welcome += session.varint(len(text)) + struct.pack("<Q", session.fnv1a(text)) + b"\0"
+        welcome += session.varint(len(text)) + struct.pack("<Q", session.fnv1a(text)) + b"\0" + bytes(8)
         sent += [Sent(*way_of(d, client), sealed(b, epoch, d)) for d, b in [(DOWN, welcome), *before, (direction, body)]]
         wanted[len(sent)] = rule
     write_capture(path, sent)

@@ -28,7 +28,7 @@ tactus.prefs.port = Pref.uint("UDP port of servers", 7447, "For captures that be
 -- ---- Fields and rules ------------------------------------------------------------------------------------------------
 local forms = { [0] = "handshake", "parts", "packet", "reserved" }
 local kinds = { [0] = "join", "welcome", "refusal", "leave" }
-local part_names = { "acknowledgement", "clock", "buttons or pace", "piece", "state", "hash", "fragment", "packet" }
+local part_names = { "acknowledgement", "clock", "buttons or pace", "piece", "state or seat", "hash", "fragment", "packet" }
 local reasons = { [0] = "bye", "version", "full", "limits", "silence", "scene", "protocol" }
 local statuses = { [0] = "bad", "good", "unverified" }
 local directions = { [0] = "up", "down" }
@@ -55,6 +55,8 @@ field("magic", ProtoField.string, "Magic")
 field("version", u8, "Version")
 field("role", u8, "Role", base.DEC, roles)
 field("nonce", u64, "Nonce", base.HEX)
+field("token", u64, "Token of the session to go on with", base.HEX)
+field("seat", u8, "Seat, from 1")
 field("state_limit", u64, "State limit [bytes]", base.DEC)
 field("header_limit", u64, "Declaration limit [bytes]", base.DEC)
 field("padding", raw, "Zeros")
@@ -63,6 +65,7 @@ field("client", u16, "Client")
 field("size", u64, "Declaration size [bytes]", base.DEC)
 field("hash", u64, "Declaration hash (FNV-1a)", base.HEX)
 field("start", u64, "Server's clock at tick 0 [us]", base.DEC)
+field("world", u64, "What is simulated", base.HEX)
 field("reason", u8, "Reason", base.DEC, reasons)
 field("part", ProtoField.none, "Part")
 field("part.type", u8, "Type", base.DEC, types)
@@ -446,7 +449,11 @@ add_part[PIECES] = function(r, tree, d)
   return "piece " .. index .. " of " .. floor((epoch.size + PIECE - 1) / PIECE)
 end
 
-add_part[STATE] = function(r, tree)
+add_part[STATE] = function(r, tree, d)
+  if d.direction == DOWN then
+    local seat = r:add(tree, "seat", 1)
+    return "seat " .. (seat and seat:uint() or "")
+  end
   local live = r:add(tree, "state.live", 1)
   if live and live:uint() > 1 then r.broken = true end
   return live and live:uint() == 1 and "live" or "not live"
@@ -482,7 +489,7 @@ add_part[PACKETS] = function(r, tree, d)
   return add_packet(tree, range, d.epoch, d.direction, number, d.fresh)
 end
 
-local only = { [CLOCK] = DOWN, [PIECES] = DOWN, [STATE] = UP, [HASH] = UP }
+local only = { [CLOCK] = DOWN, [PIECES] = DOWN, [HASH] = UP }
 
 local function add_parts(tree, d)
   local r, last, words = reader(d.tvb, 2, d.stop), 0, {}
@@ -498,7 +505,8 @@ local function add_parts(tree, d)
     end
     local kind = type_range:uint()
     local part = tree:add(f.part, d.tvb:range(from, r.at + size - from))
-    part:append_text(": " .. (kind == PACE and (d.direction == UP and "buttons" or "pace") or types[kind] or "reserved"))
+    local ways = kind == PACE and { "buttons", "pace" } or kind == STATE and { "state", "seat" } or {}
+    part:append_text(": " .. (ways[d.direction == UP and 1 or 2] or types[kind] or "reserved"))
     part:add(f["part.type"], type_range)
     part:add(f["part.size"], size_range, exact)
     if kind < last or kind == 0 or (kind > 8 and kind < 64) or (only[kind] and only[kind] ~= d.direction) or
@@ -541,6 +549,8 @@ add_handshake[JOIN] = function(r, tree, d)
     r:take(r:left())
     return "join of version " .. version:uint()
   end
+  r:add(tree, "token", 8)
+  r:add(tree, "seat", 1)
   r:add_varint(tree, "state_limit")
   r:add_varint(tree, "header_limit")
   local zeros = r:left() > 0 and r:take(r:left())
@@ -557,6 +567,7 @@ add_handshake[WELCOME] = function(r, tree, d)
   local size = r:add_varint(tree, "size")
   local hash = r:add(tree, "hash", 8)
   if (r:add_varint(tree, "start") or 0) >= END_OF_TIME then r.broken = true end
+  r:add(tree, "world", 8)
   if r.broken then return "welcome" end
   local epochs, key = d.conversation.epochs, epoch:raw()
   if d.fresh then d.conversation.client = d.to end

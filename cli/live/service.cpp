@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/live/service.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "cli/live/live_report.h"
+#include "cli/live/ticker.h"
+
+namespace tactus::cli {
+namespace {
+
+// [us] of silence: a hand begins to lift off, has lifted off and may be followed by another client, has lost its seat
+constexpr std::uint64_t kFresh = 300'000, kLifted = 1'000'000, kEmpty = 10'000'000;
+constexpr std::uint64_t kLasting = 3'000'000;  // [us] of wider bounds, before they are worth a line
+
+}  // namespace
+
+Service::Service(sim::Server& world, SessionServer& sessions, ServerWire& wire, Observation* observation, EventLog log)
+    : world_(world), sessions_(sessions), wire_(wire), observation_(observation), log_(log), told_(sessions.clients()) {
+  for (const sim::SceneUser& user : world.scene().users)
+    seats_.push_back({.client = {}, .device = {.position = user.start}, .is_lifted = false});
+  devices_.resize(seats_.size());
+}
+
+/// Each datagram has the time at which it was taken: what came while another was handled did not come before it.
+void Service::hear() {
+  constexpr int kMost = 1000;  // at a time: a tick must not wait for a flood to end
+  for (int i = 0; i < kMost; ++i) {
+    const auto heard = wire_.receive(microseconds_now());
+    if (!heard) break;
+    const std::uint64_t now = microseconds_now();
+    if (!sessions_.handle_datagram(now, heard->peer, heard->bytes)) ++refused_;
+    wire_.settle([this](std::uint64_t peer) { return has_session(peer); });
+    say(now);
+  }
+  while (const auto peer = wire_.poll_closed()) end(*peer);
+  sessions_.handle_timeout(microseconds_now());
+}
+
+/// The peer is gone: its client has left, even if no leave was heard.
+void Service::end(std::uint64_t peer) {
+  for (std::uint16_t i = 0; i < sessions_.clients(); ++i)
+    if (sessions_.status(i).peer == peer) sessions_.close(i, LeaveReason::bye);
+}
+
+void Service::close(std::uint64_t now) {
+  sessions_.close();
+  say(now);
+  wire_.close();
+}
+
+void Service::say(std::uint64_t now) {
+  while (const auto datagram = sessions_.poll_datagram(now)) wire_.send(datagram->peer, datagram->bytes);
+  while (const auto event = sessions_.poll_event()) tell(*event, now);
+}
+
+std::size_t Service::live() const {
+  std::size_t count = 0;
+  for (std::uint16_t i = 0; i < sessions_.clients(); ++i) count += sessions_.status(i).state == SessionState::live ? 1u : 0u;
+  return count;
+}
+
+// Ticks
+
+Outcome Service::step(std::uint64_t now, std::int64_t tick, std::optional<TraceWriter>& trace, const std::string& output) {
+  constexpr std::int64_t kAtOnce = 10;
+  wire_.tick(now, [this](std::uint64_t peer) { return has_session(peer); });
+  look_after_seats(now);
+  if (tick - next_ > kAtOnce) left_out_ += tick - std::exchange(next_, tick);
+  for (; next_ <= tick; ++next_) TACTUS_CHECK(make_tick(now, trace, output));
+  return {};
+}
+
+Outcome Service::make_tick(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output) {
+  for (std::size_t i = 0; i < seats_.size(); ++i) {
+    Seat& seat = seats_[i];
+    if (seat.client) seat.device = sessions_.device(*seat.client, now).value_or(seat.device);
+    devices_[i] = seat.device;
+  }
+  world_.observe();
+  TraceFrame& frame = world_.frame();
+  frame.tick += left_out_;
+  world_.touch(devices_);
+  const Truth truth = world_.truth();
+  if (const auto sent = sessions_.submit(now, frame.tick, truth); !sent)
+    return refuse("session", place_of_tick(frame.tick), sent.error());
+  say(now);
+  if (observation_ != nullptr) observation_->offer(frame, truth.loads);
+  if (trace)
+    if (const auto written = trace->write(frame); !written) return refuse(output, place_of_tick(frame.tick), written.error());
+  if (auto stepped = world_.step(); !stepped) return refuse(stepped.error());
+  return {};
+}
+
+// Seats
+
+std::uint64_t Service::silence_of(std::uint16_t client, std::uint64_t now) const {
+  const std::uint64_t heard = sessions_.status(client).heard;
+  return now > heard ? now - heard : 0;
+}
+
+void Service::look_after_seats(std::uint64_t now) {
+  for (std::size_t i = 0; i < seats_.size(); ++i)
+    if (seats_[i].client) look_after(seats_[i], i, now);
+  for (std::uint16_t client = 0; client < sessions_.clients(); ++client) {
+    const ClientStatus status = sessions_.status(client);
+    if (status.state != SessionState::live) continue;
+    tell_widening(status, now);
+    if (status.role == Role::participant && silence_of(client, now) <= kFresh) give_seat(status, now);
+  }
+}
+
+/// A hand that is not heard lifts off within a second; that of one who left, or was silent for too long, is where it was before anybody
+/// came.
+void Service::look_after(Seat& seat, std::size_t user, std::uint64_t now) {
+  const std::uint64_t silence = silence_of(*seat.client, now);
+  if (sessions_.status(*seat.client).state == SessionState::closed) return leave(seat, user, now, "has left");
+  if (silence > kEmpty) return leave(seat, user, now, "was silent for 10 s");
+  world_.lift(user, static_cast<double>(kLifted - std::clamp(silence, kFresh, kLifted)) / (kLifted - kFresh));
+  if (const bool lifted = silence > kLifted; lifted != std::exchange(seat.is_lifted, lifted))
+    tell(*seat.client, now, lifted ? "lifted" : "returned",
+         lifted ? fmt::format("not heard for 1 s: the hand of {} lifts off", name_of(seat))
+                : fmt::format("heard again: it plays {}", name_of(seat)),
+         {{"user", name_of(seat)}});
+}
+
+void Service::leave(Seat& seat, std::size_t user, std::uint64_t now, const std::string& why) {
+  const std::uint16_t client = *seat.client;
+  tell(client, now, "unseated", fmt::format("{}: the seat of {} is free", why, name_of(seat)), {{"user", name_of(seat)}});
+  sessions_.seat(client, 0);
+  seat = {.client = {}, .device = {.position = world_.scene().users[user].start}, .is_lifted = false};
+  world_.lift(user, 1);
+}
+
+/// The seat that a client wants, or any, if nobody whose hand is in the world has it.
+Service::Seat* Service::seat_for(const ClientStatus& status, std::uint64_t now) {
+  const auto is_free = [&](const Seat& seat) { return !seat.client || silence_of(*seat.client, now) > kLifted; };
+  if (status.wanted_seat > seats_.size()) return nullptr;
+  if (status.wanted_seat > 0) return is_free(seats_[status.wanted_seat - 1u]) ? &seats_[status.wanted_seat - 1u] : nullptr;
+  const auto nobodys = std::ranges::find_if(seats_, [](const Seat& seat) { return !seat.client; });
+  return nobodys == seats_.end() ? nullptr : &*nobodys;
+}
+
+/// What a client has it is told again if its session began anew.
+void Service::give_seat(const ClientStatus& status, std::uint64_t now) {
+  const std::uint16_t client = status.client;
+  const auto own = std::ranges::find(seats_, client, &Seat::client);
+  if (own != seats_.end()) {
+    if (status.seat != number_of(*own)) sessions_.seat(client, number_of(*own));
+    return;
+  }
+  Seat* const seat = seat_for(status, now);
+  if (seat == nullptr) {
+    if (std::exchange(told_[client].looks_on, true)) return;
+    tell(client, now, "looks_on",
+         status.wanted_seat == 0 ? "looks on: no seat is free"
+                                 : fmt::format("looks on: seat {} is taken, or none of the scene", status.wanted_seat));
+    return;
+  }
+  if (seat->client) leave(*seat, number_of(*seat) - 1u, now, "is followed by another client");
+  seat->client = client;
+  told_[client].looks_on = false;
+  sessions_.seat(client, number_of(*seat));
+  tell(client, now, "seated", "plays " + name_of(*seat), {{"user", name_of(*seat)}});
+}
+
+// What the operator is told
+
+void Service::tell(std::uint16_t client, std::uint64_t now, const char* event, const std::string& text, Json fields) {
+  fields["client"] = client;
+  log_.tell(now, event, fmt::format("client {} {}", client, text), std::move(fields));
+}
+
+void Service::tell(const ServerEvent& event, std::uint64_t now) {
+  const ClientStatus status = sessions_.status(event.client);
+  switch (event.kind) {
+    case ServerEvent::Kind::joined: {
+      told_[event.client] = {};
+      const std::string address = wire_.address_of(status.peer),
+                        role = status.role == Role::observer ? "observer" : "participant";
+      return tell(event.client, now, "joined", fmt::format("joins from {} as {}", address, role),
+                  {{"address", address}, {"role", role}});
+    }
+    case ServerEvent::Kind::live:
+      return tell(event.client, now, "live", "has the scene");
+    case ServerEvent::Kind::moved: {
+      const std::string address = wire_.address_of(status.peer);
+      return tell(event.client, now, "moved", "is at " + address + " now", {{"address", address}});
+    }
+    case ServerEvent::Kind::left:
+      return tell(event.client, now, "left", fmt::format("is gone: {}", cli::name_of(event.reason)),
+                  {{"reason", cli::name_of(event.reason)}});
+    case ServerEvent::Kind::widened:
+      told_[event.client].widened_at = now;
+      return;
+  }
+}
+
+void Service::tell_widening(const ClientStatus& status, std::uint64_t now) {
+  Told& told = told_[status.client];
+  if (status.widening == told.widening || now < told.widened_at + kLasting) return;
+  told.widening = status.widening;
+  tell(status.client, now, "widened",
+       status.widening == 1 ? std::string("has the bounds that were asked for again")
+                            : fmt::format("gets bounds {:.3g} times as wide: its network does not carry more", status.widening),
+       {{"widening", status.widening}});
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A simulated world for clients that join: who sits where, whose hand is in it, and what an operator is told.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tactus/session/session_server.h>
+#include <tactus/sim/server.h>
+#include <tactus/trace/trace_file.h>
+#include "cli/live/event_log.h"
+#include "cli/live/wire.h"
+#include "cli/observe/observation.h"
+#include "cli/report/messages.h"
+
+namespace tactus::cli {
+
+/// pre  everything given outlives it
+class Service {
+ public:
+  /// in   observation  may be null: nobody observes
+  Service(sim::Server& world, SessionServer& sessions, ServerWire& wire, Observation* observation, EventLog log);
+
+  /// Take what has come, and what time has brought.
+  void hear();
+  /// The world comes to this tick. Ticks that were missed are made at once, if they are few; of many the world knows nothing.
+  Outcome step(std::uint64_t now, std::int64_t tick, std::optional<TraceWriter>& trace, const std::string& output);
+  void say(std::uint64_t now);
+  /// Take leave of all.
+  void close(std::uint64_t now);
+  std::size_t live() const;
+  std::uint64_t refused() const { return refused_; }
+
+ private:
+  /// A user of the scene.
+  struct Seat {
+    std::optional<std::uint16_t> client;  // that plays it
+    DeviceSample device;
+    bool is_lifted = false;  // the client is not heard
+  };
+  /// What the operator was told of a client.
+  struct Told {
+    double widening = 1;
+    std::uint64_t widened_at = 0;  // [us] since when it is another one
+    bool looks_on = false;
+  };
+
+  Outcome make_tick(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output);
+  void look_after_seats(std::uint64_t now);
+  void look_after(Seat& seat, std::size_t user, std::uint64_t now);
+  void leave(Seat& seat, std::size_t user, std::uint64_t now, const std::string& why);
+  void give_seat(const ClientStatus& status, std::uint64_t now);
+  Seat* seat_for(const ClientStatus& status, std::uint64_t now);
+  std::uint8_t number_of(const Seat& seat) const { return static_cast<std::uint8_t>(&seat - seats_.data() + 1); }
+  const std::string& name_of(const Seat& seat) const { return world_.scene().users[number_of(seat) - 1u].name; }
+  std::uint64_t silence_of(std::uint16_t client, std::uint64_t now) const;
+  void tell(const ServerEvent& event, std::uint64_t now);
+  void tell_widening(const ClientStatus& status, std::uint64_t now);
+  void tell(std::uint16_t client, std::uint64_t now, const char* event, const std::string& text, Json fields = Json::object());
+  void end(std::uint64_t peer);
+  bool has_session(std::uint64_t peer) const { return sessions_.has_peer(peer); }
+
+  sim::Server& world_;
+  SessionServer& sessions_;
+  ServerWire& wire_;
+  Observation* observation_;
+  EventLog log_;
+  std::vector<Seat> seats_;               // by user of the scene
+  std::vector<DeviceSample> devices_;     // the same
+  std::vector<Told> told_;                // by client
+  std::int64_t next_ = 0, left_out_ = 0;  // [ticks] the one to be made, those that the world was not simulated
+  std::uint64_t refused_ = 0;
+};
+
+}  // namespace tactus::cli
