@@ -16,16 +16,22 @@ namespace tactus {
 struct Sender::Impl {
   Impl(SharedScene of, const SenderOptions& options)
       : scene(std::move(of)),
-        rigid(*scene, options.policy, 0, max_rigid_packet(*scene), 1, initial_states(*scene), *scene, options.triggers,
-              options.policy.baseline) {
+        rigid(*scene, with(options.policy, Baseline::previous), 0, max_rigid_packet(*scene), 1, initial_states(*scene), *scene,
+              options.triggers, with(options.policy, Baseline::previous).baseline) {
+    const SenderPolicy policy = with(options.policy, Baseline::acknowledged);
     for (std::size_t i = 0; i < scene->deformables.size(); ++i)
-      deformables.push_back(DeformableEncoder::create(*scene, i, options.deformable, options.policy));
+      deformables.push_back(DeformableEncoder::create(*scene, i, options.deformable, policy));
     if (scene->loads)
-      loads.emplace(*scene, options.policy, load_substream(*scene), max_load_packet(*scene), 1, initial_loads(*scene), *scene,
-                    options.load, options.policy.baseline);
+      loads.emplace(*scene, policy, load_substream(*scene), max_load_packet(*scene), 1, initial_loads(*scene), *scene,
+                    options.load, policy.baseline);
     packets.reserve(2 + 2 * deformables.size());
   }
 
+  /// What Baseline::repaired means for these objects.
+  static SenderPolicy with(SenderPolicy policy, Baseline repaired) noexcept {
+    if (policy.baseline == Baseline::repaired) policy.baseline = repaired;
+    return policy;
+  }
   Result<void> read(std::int64_t tick, const Truth& truth) noexcept;
   Result<std::span<const Packet>> encode(std::optional<std::uint64_t> number, std::int64_t tick, const Truth& truth) noexcept;
   void add(const Packet& packet) noexcept {
@@ -111,6 +117,8 @@ void Sender::request_key() noexcept {
   for (auto& object : impl_->deformables) object->request_key();
   if (impl_->loads) impl_->loads->request_key();
 }
+
+void Sender::request_rigid_key() noexcept { impl_->rigid.request_key(); }
 
 void Sender::know(std::shared_ptr<const DevicePath> path) {
   impl_->path = std::move(path);

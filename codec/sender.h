@@ -48,7 +48,8 @@ struct Truth {
 /// refuses the following ones (R-PKT-4) until a key packet, sent after key_interval or request_key(). With Baseline::acknowledged
 /// a packet builds on the newest state that acknowledge() named, so that every one that arrives can be decoded; a packet that goes
 /// out anyway also names the rigid objects that are over half of a bound, and set_link() has states sent again. The bounds above
-/// still hold only for what arrived: a client that shows the past (Interpolation::playout) bends over the gaps.
+/// still hold only for what arrived: a client that shows the past (Interpolation::playout) bends over the gaps. Baseline::repaired
+/// leaves loss to the transport.
 /// A key packet of a layered object drops the shape outside the area of interest until the visual packet arrives. If no client joins or
 /// seeks, key_interval 0 avoids that.
 ///
@@ -78,6 +79,7 @@ class Sender {
   /// even if every bound holds. The rigid key packet names the objects that have left their initial state; if none has, it is
   /// not sent.
   void request_key() noexcept;
+  void request_rigid_key() noexcept;  ///< the same for the rigid objects alone
 
   /// Report that the receiver has decoded a packet. Report all of them, in any order: the newest is the next baseline, and objects
   /// that others named are not sent again. Numbers of no packet, or of one long ago, are ignored.

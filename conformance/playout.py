@@ -11,7 +11,7 @@ from easing import eased, kept
 from rigid import Packet, motion, predict
 from scene import Declaration, State
 
-MOST_UPDATES = 64
+MOST_EASED = 64
 HEARD = 1024
 
 
@@ -42,7 +42,6 @@ class Playout:
             known = self.updates[update.object]
             known.append(KnownUpdate(packet.tick, packet.number, packet.moment.states[update.object]))
             known.sort(key=lambda u: (u.tick, u.number))
-            del known[:-MOST_UPDATES]
 
     def pose(self, i: int, s: int) -> tuple[tuple, tuple]:
         known = self.updates[i]
@@ -62,14 +61,14 @@ class Playout:
             return predict(self.scene, a.state, s)
         return self.bend(a.state, after[0].state, s)
 
-    def left(self, known: list[KnownUpdate], k: int) -> Offset:
-        """What is left to go at update k."""
-        if k == 0:
+    def left(self, known: list[KnownUpdate], k: int, back: int = 0) -> Offset:
+        """What is left to go at update k, `back` before the one that is shown."""
+        if k == 0 or back > MOST_EASED:
             return NO_OFFSET
         a, z = known[k].state, known[k - 1].state
         path = self.between(known, k - 1, a.tick)
         counts = z.ease > 0 and a.tick < z.tick + (1 << z.ease)
-        return kept(eased(path, z, self.left(known, k - 1), a.tick) if counts else path, a)
+        return kept(eased(path, z, self.left(known, k - 1, back + 1), a.tick) if counts else path, a)
 
     def bend(self, a: State, b: State, s: int) -> tuple[tuple, tuple]:
         scene, whole = self.scene, b.tick - a.tick

@@ -20,7 +20,10 @@ UP, DOWN = 0, 1
 HANDSHAKE, PARTS, PACKET = range(3)                         # forms
 JOIN, WELCOME, REFUSAL, LEAVE = range(4)                    # kinds of handshakes
 ACK, CLOCK, BUTTONS, PIECE, STATE, HASH, FRAGMENT, PACKET_PART = range(1, 9)
-PACE, SEAT = BUTTONS, STATE                                 # down
+REPORT = PIECE                                              # up
+PACE, SEAT, BASELINES = BUTTONS, STATE, HASH                # down
+PREVIOUS, ACKNOWLEDGED = 0, 1                               # policies of baselines
+MOST_HELD, BYTES_HELD = 1024, 1 << 16
 LARGEST_DATAGRAM = 1200
 MOST_UNTOLD = 32                                            # numbers that are accepted until an acknowledgement is due at once
 PIECE_SIZE, WINDOW = 1024, 64
@@ -64,7 +67,8 @@ def part(kind: int, data: bytes) -> bytes:
     return bytes([kind]) + varint(len(data)) + data
 
 
-COMES = {UP: (ACK, BUTTONS, STATE, HASH, FRAGMENT, PACKET_PART), DOWN: (ACK, CLOCK, PACE, PIECE, SEAT, FRAGMENT, PACKET_PART)}
+COMES = {UP: (ACK, BUTTONS, REPORT, STATE, HASH, FRAGMENT, PACKET_PART),
+         DOWN: (ACK, CLOCK, PACE, PIECE, SEAT, BASELINES, FRAGMENT, PACKET_PART)}
 
 
 def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
@@ -77,8 +81,14 @@ def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
         require(out[0] < END_OF_TICKS and abs(out[1]) <= FARTHEST_PACE, *SPARE)
     elif kind == BUTTONS:
         out = e.number(4, CUT), e.number(4, CUT)
-    elif kind == STATE:
+    elif kind == BASELINES and direction == DOWN:
         out = (e.number(1, CUT),)
+        require(out[0] <= ACKNOWLEDGED, *SPARE)
+    elif kind == STATE:                                     # and seat
+        out = (e.number(1, CUT),)
+    elif kind == REPORT and direction == UP:
+        out = e.varint(CUT, SPARE), e.number(1, CUT)
+        require(out[1] <= 1, *SPARE)
     elif kind == HASH:
         out = e.number(1, CUT), e.number(2, CUT), e.number(4, CUT)
     else:
@@ -155,6 +165,8 @@ class Epoch:
         self.fragments: dict[tuple, dict] = {}
         self.hash: Optional[bytes] = None
         self.packets = 0
+        self.policy = PREVIOUS
+        self.held: dict[int, tuple[int, bytes]] = {}        # packets of rigid objects that miss their baseline: when they came
         self.path: Optional[DevicePath] = None              # of the device, where it moves objects
         self.own: Optional[RigidDecoder] = None             # its packets
 
@@ -188,13 +200,15 @@ class Epoch:
                 if held != NO_TIMING:
                     self.round_trip = max(0, now - self.sent_at[self.acknowledged] - 16 * held)
             self.take_acknowledged(newest, elements[2])
-        elif kind == PIECE:
+        elif kind == PIECE and self.direction == UP:
             self.take_piece(*elements)
         elif kind == FRAGMENT:
             return self.take_fragment(now, number, *elements)
         elif kind == PACKET_PART:
             back, packet = elements
-            return self.decode(number - back, packet)
+            return self.decode(now, number - back, packet)
+        elif kind == BASELINES and self.direction == UP:
+            self.policy = elements[0]
         elif kind == PACE and self.direction == UP:
             self.take_pace(*elements)
         else:
@@ -252,10 +266,19 @@ class Epoch:
         if len(have["data"]) < count:
             return True
         if have["decoded"] is None:
-            have["decoded"] = self.decode(number - back, b"".join(have["data"][i] for i in range(count)))
+            have["decoded"] = self.decode(now, number - back, b"".join(have["data"][i] for i in range(count)))
         return have["decoded"]
 
-    def decode(self, number: int, packet: bytes) -> bool:
+    def decode(self, now: int, number: int, packet: bytes) -> bool:
+        before = self.packets
+        taken = self.decode_one(now, number, packet)
+        if self.packets > before:                           # each may be the baseline of the next
+            for n, (_, waiting) in sorted(self.held.items()):
+                if n in self.held:
+                    self.decode_one(now, n, waiting)
+        return taken
+
+    def decode_one(self, now: int, number: int, packet: bytes) -> bool:
         if number < 1 or not self.decoders:
             return False
         try:
@@ -264,12 +287,34 @@ class Epoch:
             if number in decoder.receiver.kept:
                 return True                                 # it came before
             decoded = decode_numbered(decoder, number, payload)
-        except StreamError:
-            return False
+        except StreamError as error:
+            return self.hold(now, number, packet, error)
         self.packets += 1
         if number % 64 == 0 and number == decoder.receiver.newest and getattr(decoded, "layer", 2) == 2:
             self.hash = struct.pack("<BHI", substream, number % (1 << 16), decoder.state_hash() % (1 << 32))
+        if isinstance(decoder, RigidDecoder):
+            self.held = {n: of for n, of in self.held.items() if n > decoder.receiver.newest}
         return True
+
+    def hold(self, now: int, number: int, packet: bytes, error: StreamError) -> bool:
+        """Section 4.4: a packet of rigid objects waits for its baseline."""
+        if self.direction == DOWN or self.policy != PREVIOUS or error.errc != "state":
+            return False
+        decoder = self.decoders.substreams[self.decoders.split(packet)[0]]
+        if not isinstance(decoder, RigidDecoder):
+            return False
+        if decoder.receiver.kept and number <= decoder.receiver.newest or number in self.held:
+            return True                                     # no use any more, or here already
+        if len(self.held) == MOST_HELD or sum(len(p) for _, p in self.held.values()) + len(packet) > max(BYTES_HELD, len(packet)):
+            return False
+        self.held[number] = now, packet
+        return True
+
+    def report(self, now: int) -> bytes:
+        """The playout delay, 0 as nothing is shown here, and whether a key packet is needed."""
+        waits = 4 * ((self.round_trip or 0) + self.patience)
+        is_stuck = any(now > at + max(500 * MS, waits) for at, _ in self.held.values())
+        return part(REPORT, varint(0) + bytes([is_stuck]))
 
     def accept(self, now: int, number: int, parts: list[tuple]) -> None:
         self.accepted[number] = now
@@ -393,6 +438,8 @@ class Client:
         live, parts, packet = self.state == "live", [], b""
         if now >= self.sign_at:
             self.sign_at = now + self.silence()
+            if live:
+                parts.append(self.epoch.report(now))
             parts.append(part(STATE, bytes([live])))
             self.first_live = self.epoch.next if live and self.first_live is None else self.first_live
         if self.epoch.hash:

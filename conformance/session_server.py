@@ -51,9 +51,9 @@ class ServedEpoch(Epoch):
         elif kind == BUTTONS and elements[0] >= self.buttons[0]:
             self.buttons = elements
 
-    def decode(self, number: int, packet: bytes) -> bool:
+    def decode(self, now: int, number: int, packet: bytes) -> bool:
         """False also for a packet that comes too late to act (65, section 4)."""
-        if not super().decode(number, packet):
+        if not super().decode(now, number, packet):
             return False
         if not self.path or number in self.path.states:
             return True

@@ -14,43 +14,69 @@
 
 namespace tactus {
 
-// ==== timeline ====
+// ==== timelines ====
 
-// ==== timeline ====
+Timelines::Timelines(std::size_t objects)
+    : updates_(objects == 0 ? 0 : objects + std::clamp<std::size_t>(128 * objects, 4096, 32768)), first_(objects), last_(objects) {}
 
-namespace {
-
-bool is_before(const Timeline::Update& a, const Timeline::Update& b) noexcept {
-  return std::tie(a.state.tick, a.number) < std::tie(b.state.tick, b.number);
-}
-
-}  // namespace
-
-void Timeline::reset(const RigidState& initial) noexcept {
-  updates_[0] = {0, initial};
-  count_ = 1;
-}
-
-void Timeline::add(const Update& update) noexcept {
-  std::size_t at = count_;
-  while (at > 0 && is_before(update, updates_[at - 1])) --at;
-  const auto begin = updates_.begin();
-  if (count_ < kMost) {
-    std::move_backward(begin + at, begin + count_, begin + count_ + 1);
-    ++count_;
-  } else {
-    if (at == 0) return;
-    std::move(begin + 1, begin + at, begin);
-    --at;
+void Timelines::reset(std::span<const RigidObject> objects) noexcept {
+  for (std::size_t i = 0; i < first_.size(); ++i) {
+    updates_[i] = {.number = 0, .state = {.position = objects[i].initial.position, .rotation = objects[i].initial.rotation}};
+    first_[i] = last_[i] = static_cast<Index>(i);
   }
-  updates_[at] = update;
+  free_ = kNone;
+  for (std::size_t i = updates_.size(); i > first_.size(); --i) {
+    updates_[i - 1].next = free_;
+    free_ = static_cast<Index>(i - 1);
+  }
+  newest_ = 0;
 }
 
-Timeline::Around Timeline::around(std::int64_t tick) const noexcept {
-  std::size_t after = count_;
-  while (after > 0 && updates_[after - 1].state.tick > tick) --after;
-  const std::size_t before = after > 0 ? after - 1 : 0;
-  return {updates_[before], before + 1 < count_ ? &updates_[before + 1] : nullptr};
+/// Forget what no tick from the horizon on needs.
+void Timelines::trim(std::uint32_t object, std::int64_t horizon) noexcept {
+  while (first_[object] != last_[object] && updates_[updates_[first_[object]].next].state.tick <= horizon) {
+    const Index gone = first_[object];
+    first_[object] = updates_[gone].next;
+    updates_[first_[object]].previous = kNone;
+    updates_[gone].next = free_;
+    free_ = gone;
+  }
+}
+
+void Timelines::make_room() noexcept {
+  std::int64_t oldest = newest_;
+  for (std::size_t i = 0; i < first_.size(); ++i)
+    if (first_[i] != last_[i]) oldest = std::min(oldest, updates_[updates_[first_[i]].next].state.tick);
+  for (std::int64_t span = newest_ - oldest; free_ == kNone; span /= 2)
+    for (std::uint32_t i = 0; i < first_.size(); ++i) trim(i, newest_ - span / 2);
+}
+
+void Timelines::add(std::uint32_t object, std::uint64_t number, const RigidState& state) noexcept {
+  newest_ = std::max(newest_, state.tick);
+  trim(object, newest_ - kept_);
+  swept_ = (swept_ + 1) % static_cast<std::uint32_t>(first_.size());
+  trim(swept_, newest_ - kept_);
+  if (free_ == kNone) make_room();
+  Index before = last_[object];
+  const auto is_later = [&](const Update& u) { return std::tie(u.state.tick, u.number) > std::tie(state.tick, number); };
+  while (before != kNone && is_later(updates_[before])) before = updates_[before].previous;
+  const Index at = free_, after = before == kNone ? first_[object] : updates_[before].next;
+  free_ = updates_[at].next;
+  updates_[at] = {number, state, before, after};
+  (before == kNone ? first_[object] : updates_[before].next) = at;
+  (after == kNone ? last_[object] : updates_[after].previous) = at;
+}
+
+Timelines::Around Timelines::around(std::uint32_t object, std::int64_t tick) const noexcept {
+  Index before = last_[object];
+  while (updates_[before].state.tick > tick && updates_[before].previous != kNone) before = updates_[before].previous;
+  return {before, updates_[before].next};
+}
+
+std::size_t Timelines::size(std::uint32_t object) const noexcept {
+  std::size_t out = 1;
+  for (Index i = first_[object]; i != last_[object]; i = updates_[i].next) ++out;
+  return out;
 }
 
 void HeardPackets::add(std::uint64_t number) noexcept {
@@ -124,16 +150,13 @@ std::int64_t Replica::interval(const Track& track) const noexcept {
 
 void Replica::reset_timelines() noexcept {
   heard_.reset();
-  for (std::size_t i = 0; i < timelines_.size(); ++i) {
-    const RigidPose& initial = scene_.objects[i].initial;
-    timelines_[i].reset({.position = initial.position, .rotation = initial.rotation});
-  }
+  timelines_.reset(scene_.objects);
 }
 
 void Replica::add_to_timelines(const DecodedPacket& packet, std::span<const RigidState> objects) noexcept {
   if (packet.restarts) reset_timelines();
   heard_.add(packet.number);
-  for (const RigidUpdate& update : packet.updates) timelines_[update.object].add({packet.number, objects[update.object]});
+  for (const RigidUpdate& update : packet.updates) timelines_.add(update.object, packet.number, objects[update.object]);
 }
 
 void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t arrival) noexcept {
@@ -168,36 +191,42 @@ RigidMotion Replica::motion(const Track& track, std::int64_t now) const noexcept
   return predictor_.motion(track.path.state, now, {});
 }
 
-/// spec 60-client 7.   pre  a.state.tick <= tick, and tick <= b->state.tick if there is a b
-RigidPose Replica::path_between(std::uint32_t object, const Timeline::Update& a, const Timeline::Update* b,
-                                std::int64_t tick) const noexcept {
+/// From an update to the next. spec 60-client 7.   pre  a.state.tick <= tick, and tick is not after the next
+RigidPose Replica::path_from(std::uint32_t object, const Timelines::Update& a, std::int64_t tick) const noexcept {
+  const Timelines::Update* const b = a.next != Timelines::kNone ? &timelines_[a.next] : nullptr;
   const bool is_whole = b == nullptr || a.number == 0 || b->state.tick == a.state.tick || b->state.tick - a.state.tick > reach_ ||
                         heard_.all_between(a.number, b->number);
   return is_whole ? predictor_.shown(object, a.state, tick) : bend(scene_, a.state, b->state, tick);
 }
 
 /// What was left to go at the tick of an update: from the updates before it, back to one whose own easing was over when the next came.
-PoseOffset Replica::past_offset(std::uint32_t object, const Timeline::Update& update) const noexcept {
-  const Timeline& timeline = timelines_[object];
-  const Timeline::Update* at = &update;
-  for (const auto* z = timeline.previous(*at); z != nullptr && is_easing(z->state, at->state.tick); z = timeline.previous(*at))
+PoseOffset Replica::past_offset(std::uint32_t object, Timelines::Index update) const noexcept {
+  Timelines::Index at = update;
+  for (unsigned back = 0; back < kMostEased; ++back) {
+    const Timelines::Index z = timelines_[at].previous;
+    if (z == Timelines::kNone || !is_easing(timelines_[z].state, timelines_[at].state.tick)) break;
     at = z;
+  }
   PoseOffset out;
-  for (;; ++at) {
-    const Timeline::Update* z = timeline.previous(*at);
-    const std::int64_t tick = at->state.tick;
-    if (z == nullptr) out = {};
-    else out = kept_offset(eased(path_between(object, *z, at, tick), z->state, out, tick), at->state);
-    if (at == &update) return out;
+  for (;; at = timelines_[at].next) {
+    const Timelines::Update& to = timelines_[at];
+    if (to.previous == Timelines::kNone) {
+      out = {};
+    } else {
+      const Timelines::Update& z = timelines_[to.previous];
+      out = kept_offset(eased(path_from(object, z, to.state.tick), z.state, out, to.state.tick), to.state);
+    }
+    if (at == update) return out;
   }
 }
 
 /// spec 60-client 7 and 8
 RigidPose Replica::past_pose(std::uint32_t object, std::int64_t tick) const noexcept {
-  const auto [a, b] = timelines_[object].around(tick);
+  const Timelines::Index before = timelines_.around(object, tick).before;
+  const Timelines::Update& a = timelines_[before];
   tick = std::max(tick, a.state.tick);
-  const RigidPose path = path_between(object, a, b, tick);
-  return is_easing(a.state, tick) ? eased(path, a.state, past_offset(object, a), tick) : path;
+  const RigidPose path = path_from(object, a, tick);
+  return is_easing(a.state, tick) ? eased(path, a.state, past_offset(object, before), tick) : path;
 }
 
 RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {

@@ -17,37 +17,48 @@
 
 namespace tactus {
 
-// ==== timeline ====
-// What a client that shows the past keeps of each object, and how it bends over gaps. Integers. spec/60-client.md.
+// ==== timelines ====
+// What a client that shows the past knows of each object: its updates in the order of their ticks, as far back as they may be shown. One
+// pool for all objects, so that what rests costs one of them. spec/60-client.md section 7.
 
-// ==== timeline ====
-// What a client that shows the past knows of one object: its newest updates, in the order of their ticks. spec/60-client.md section 7.
-
-class Timeline {
+class Timelines {
  public:
-  static constexpr std::size_t kMost = 64;
+  using Index = std::uint32_t;
+  static constexpr Index kNone = ~Index{0};
 
   struct Update {
     std::uint64_t number = 0;  ///< of the packet that made it; 0: the initial state
     RigidState state;
+    Index previous = kNone, next = kNone;  ///< of the same object
   };
   /// The updates on either side of a tick.
   struct Around {
-    const Update& before;  ///< the last that is not later; without one, the first
-    const Update* after;   ///< the next; null: none is known
+    Index before = 0;     ///< the last that is not later; without one, the first
+    Index after = kNone;  ///< the next, if one is known
   };
 
-  /// Begin with an initial state.
-  void reset(const RigidState& initial) noexcept;
-  /// Add an update; without room, in place of the first one, which may be this.   time O(1) for updates in order
-  void add(const Update& update) noexcept;
-  Around around(std::int64_t tick) const noexcept;  ///< time O(updates after `tick`)
-  /// The update before one of around(); null: there is none.
-  const Update* previous(const Update& update) const noexcept { return &update == updates_.data() ? nullptr : &update - 1; }
+  /// Allocates for `objects` + 128 updates of each, 4096 at least and 32 768 at most.
+  explicit Timelines(std::size_t objects);
+  /// How long updates are kept after a newer one of any object came [ticks]; without this as long as there is room. Of an older time the
+  /// last of each object stays.
+  void keep(std::int64_t ticks) noexcept { kept_ = ticks; }
+
+  void reset(std::span<const RigidObject> objects) noexcept;  ///< to their initial states.   pre  as many as there are
+  /// Add an update. Without room all objects forget their oldest.   time O(1) for updates in order
+  void add(std::uint32_t object, std::uint64_t number, const RigidState& state) noexcept;
+  Around around(std::uint32_t object, std::int64_t tick) const noexcept;  ///< time O(updates after `tick`)
+  const Update& operator[](Index index) const noexcept { return updates_[index]; }
+  std::size_t size(std::uint32_t object) const noexcept;  ///< time O(size)
 
  private:
-  std::array<Update, kMost> updates_;  // ordered by (tick, number)
-  std::size_t count_ = 1;
+  void trim(std::uint32_t object, std::int64_t horizon) noexcept;
+  void make_room() noexcept;
+
+  std::vector<Update> updates_;
+  std::vector<Index> first_, last_;  // by object
+  Index free_ = kNone;               // a list by `next`
+  std::int64_t kept_ = std::int64_t{1} << 40, newest_ = 0;
+  std::uint32_t swept_ = 0;  // object that was looked at last
 };
 
 /// Which of the newest packets were decoded.
@@ -116,6 +127,9 @@ class Replica {
   /// time O(updates), no allocation.
   void apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t arrival) noexcept;
 
+  /// With Interpolation::playout: how far back from the newest tick poses are asked for.   in   delay  [ticks]
+  void keep(std::int64_t delay) noexcept { timelines_.keep(delay + reach_); }
+
   /// With Interpolation::playout: this number is not that of a lost packet.
   void skip_number(std::uint64_t number) noexcept { heard_.add(number); }
 
@@ -143,11 +157,11 @@ class Replica {
     std::array<std::int32_t, kArrivals> gaps{};
     std::uint8_t gap_count = 0, gap_next = 0;
   };
+  static constexpr unsigned kMostEased = 64;  // updates back
   void add_to_timelines(const DecodedPacket& packet, std::span<const RigidState> objects) noexcept;
   void reset_timelines() noexcept;
-  RigidPose path_between(std::uint32_t object, const Timeline::Update& a, const Timeline::Update* b,
-                         std::int64_t tick) const noexcept;
-  PoseOffset past_offset(std::uint32_t object, const Timeline::Update& update) const noexcept;
+  RigidPose path_from(std::uint32_t object, const Timelines::Update& a, std::int64_t tick) const noexcept;
+  PoseOffset past_offset(std::uint32_t object, Timelines::Index update) const noexcept;
   RigidPose past_pose(std::uint32_t object, std::int64_t tick) const noexcept;
   std::int64_t interval(const Track& track) const noexcept;
   RigidMotion motion(const Track& track, std::int64_t now) const noexcept;
@@ -157,9 +171,9 @@ class Replica {
   Interpolation interpolation_ = Interpolation::none;
   std::uint32_t share_ = 0;  // x 2^-16
   std::int64_t shortest_ = 0, longest_ = 0;
-  std::int64_t reach_ = 0;           // [ticks] longest gap to bend over
-  std::vector<Track> tracks_;        // empty with playout
-  std::vector<Timeline> timelines_;  // empty without
+  std::int64_t reach_ = 0;      // [ticks] longest gap to bend over
+  std::vector<Track> tracks_;   // empty with playout
+  Timelines timelines_;         // of no object without
   HeardPackets heard_;
   std::vector<DeformableDecoder*> shapes_;
 };

@@ -50,6 +50,7 @@ struct DecodedPacket {
   bool restarts =
       false;  ///< a key packet of another or restarted sender, or after a long outage: nothing before it is a baseline
   bool key = false;
+  std::uint64_t baseline = 0;  ///< number of the packet that it builds on; 0: a key packet
   std::int64_t tick = 0;
   Layer layer = Layer::all;                ///< deformable objects, profile main; not coded in profile thesis
   std::span<const RigidUpdate> updates{};  ///< rigid objects; valid until the receiver's next push()

@@ -74,6 +74,7 @@ class SubstreamDecoder {
     if (!head) return placed(head.error());
     TACTUS_TRY(const State* base, baseline_of(*head, out.number));
     out.key = head->key;
+    out.baseline = head->key ? 0 : out.number - head->baseline_delta;
     out.tick = base->tick + head->tick_delta;
     if (out.tick >= kTickLimit || !order_.fits(out.number, head->key, out.tick))
       return placed({Errc::invalid, Codec::kTickRule, codec_.bit()});

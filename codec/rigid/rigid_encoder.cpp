@@ -155,10 +155,10 @@ void RigidEncoder::set_widening(double factor) noexcept {
 }
 
 void RigidEncoder::set_link(const LinkState& link) noexcept {
-  if (early_ == 1) return;
+  loses_more_ = link.loss >= kMoreLoss;
+  if (early_ == 1) return;  // what is lost comes again, as it was
   early_ = link.loss > kHeavyLoss ? kEarlyAtHeavyLoss : kEarly;
   loses_ = link.loss >= kSomeLoss;
-  loses_more_ = link.loss >= kMoreLoss;
   early_visual_ = scaled(visual_, early_);
   for (std::size_t i = 0; i < follow_up_.size(); ++i) {
     const auto soon = static_cast<std::int64_t>(std::ceil(kFollowUp[i] * scene_.tick_rate));

@@ -14,9 +14,9 @@ constexpr std::uint16_t kHandshake = 0, kParts = 1, kPacket = 2;
 // Kinds of handshakes.
 constexpr std::uint16_t kJoin = 0, kWelcome = 1, kRefusal = 2, kLeave = 3, kFirstUnknownKind = 4;
 // Types of parts.
-constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPace = 3, kPiece = 4, kState = 5, kSeat = 5, kHash = 6,
-                       kFragment = 7,
-                       kFirstUnknown = 9;  // 3: buttons up, pace down; 8: packet
+constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPace = 3, kPiece = 4, kReport = 4, kState = 5, kSeat = 5,
+                       kHash = 6, kBaselines = 6, kFragment = 7,
+                       kFirstUnknown = 9;  // up 3 buttons, 4 report, 5 state, 6 hash; down 3 pace, 4 piece, 5 seat, 6 baselines; 8: packet
 
 constexpr std::uint32_t kMagic = 0x53544354;  // "TCTS"
 constexpr std::uint8_t kVersion = 1;
@@ -31,8 +31,7 @@ bool kind_comes(std::uint16_t kind, Direction direction) noexcept {
   return kind == kLeave || (kind < kFirstUnknownKind && (kind == kJoin) == (direction == Direction::up));
 }
 bool part_comes(std::uint8_t type, Direction direction) noexcept {
-  if (type == kHash) return direction == Direction::up;
-  return (type != kClock && type != kPiece) || direction == Direction::down;
+  return type != kClock || direction == Direction::down;
 }
 
 bool is_pace(const PacePart& pace) noexcept {
@@ -171,6 +170,8 @@ std::size_t size_of(const PacePart& p) noexcept {
 }
 std::size_t size_of(const PiecePart& p) noexcept { return varint_size(p.index) + p.bytes.size(); }
 std::size_t size_of(const StatePart&) noexcept { return 1; }
+std::size_t size_of(const ReportPart& r) noexcept { return varint_size(r.delay) + 1; }
+std::size_t size_of(const BaselinesPart&) noexcept { return 1; }
 std::size_t size_of(const SeatPart&) noexcept { return 1; }
 std::size_t size_of(const HashPart&) noexcept { return 7; }
 std::size_t size_of(const FragmentPart& f) noexcept {
@@ -184,6 +185,8 @@ void put(Put& to, const ButtonsPart& b) noexcept { to.integer(b.tick, 4).integer
 void put(Put& to, const PacePart& p) noexcept { to.varint(static_cast<std::uint64_t>(p.from)).varint(zigzag(p.offset)); }
 void put(Put& to, const PiecePart& p) noexcept { to.varint(p.index).bytes(p.bytes); }
 void put(Put& to, const StatePart& s) noexcept { to.integer(s.live, 1); }
+void put(Put& to, const ReportPart& r) noexcept { to.varint(r.delay).integer(r.key, 1); }
+void put(Put& to, const BaselinesPart& b) noexcept { to.integer(b.policy, 1); }
 void put(Put& to, const SeatPart& s) noexcept { to.integer(s.seat, 1); }
 void put(Put& to, const HashPart& h) noexcept { to.integer(h.substream, 1).integer(h.number, 2).integer(h.hash, 4); }
 void put(Put& to, const FragmentPart& f) noexcept {
@@ -194,6 +197,8 @@ void put(Put& to, const PacketPart& p) noexcept { to.varint(p.back).bytes(p.byte
 /// Of a part on the wire.
 std::uint8_t type_of(const Part& part) noexcept {
   if (std::holds_alternative<PacePart>(part)) return kPace;
+  if (std::holds_alternative<ReportPart>(part)) return kReport;
+  if (std::holds_alternative<BaselinesPart>(part)) return kBaselines;
   return std::holds_alternative<SeatPart>(part) ? kSeat : static_cast<std::uint8_t>(part.index() + 1);
 }
 
@@ -203,6 +208,11 @@ Part read_part(std::uint8_t type, Direction direction, ByteReader& r) noexcept {
     const auto from = static_cast<std::int64_t>(std::min<std::uint64_t>(r.varint(), kEndOfTicks));
     return PacePart{from, unzigzag(r.varint())};
   }
+  if (type == kReport && direction == Direction::up) {
+    const std::uint64_t delay = r.varint();
+    return ReportPart{delay, r.u8()};
+  }
+  if (type == kBaselines && direction == Direction::down) return BaselinesPart{r.u8()};
   if (type == kSeat && direction == Direction::down) return SeatPart{r.u8()};
   switch (type) {
     case kAcknowledgement: {
@@ -283,6 +293,10 @@ Result<std::optional<Part>> PartReader::read(std::uint8_t type, ByteReader part)
   if ((state != nullptr && state->live > 1) || (clock != nullptr && clock->time >= kEndOfTime))
     return fail(Errc::malformed, "R-SES-3", part.bit_offset());
   if (const auto* pace = std::get_if<PacePart>(&out); pace != nullptr && !is_pace(*pace))
+    return fail(Errc::malformed, "R-SES-3", part.bit_offset());
+  const auto* report = std::get_if<ReportPart>(&out);
+  const auto* baselines = std::get_if<BaselinesPart>(&out);
+  if ((report != nullptr && report->key > 1) || (baselines != nullptr && baselines->policy > 1))
     return fail(Errc::malformed, "R-SES-3", part.bit_offset());
   const auto* packet = std::get_if<PacketPart>(&out);
   only_packet_ = parts_ == 1 && packet != nullptr && packet->back == 0;

@@ -102,6 +102,17 @@ struct HashPart {
   std::uint32_t hash = 0;    ///< low bits of the state hash after it
 };
 
+/// What a live client shows and lacks.
+struct ReportPart {
+  std::uint64_t delay = 0;  ///< [ms] of its playout
+  std::uint8_t key = 0;     ///< 1: packets of rigid objects wait for one that does not come
+};
+
+/// On what packets of rigid objects build from this datagram on.
+struct BaselinesPart {
+  std::uint8_t policy = 0;  ///< 0: the packet before; 1: one that was acknowledged
+};
+
 struct FragmentPart {
   std::uint64_t back = 0;  ///< the packet's number is so far below the datagram's
   std::uint64_t substream = 0, index = 0, count = 0;
@@ -113,9 +124,10 @@ struct PacketPart {
   std::span<const std::uint8_t> bytes;
 };
 
-/// In the order of their types, 1..8; but PacePart has that of ButtonsPart and SeatPart that of StatePart, in the other direction.
+/// In the order of their types, 1..8; but PacePart, ReportPart, SeatPart and BaselinesPart have those of ButtonsPart, PiecePart, StatePart
+/// and HashPart, in the other direction.
 using Part = std::variant<Acknowledgement, ClockPart, ButtonsPart, PiecePart, StatePart, HashPart, FragmentPart, PacketPart,
-                          PacePart, SeatPart>;
+                          PacePart, ReportPart, SeatPart, BaselinesPart>;
 
 /// Parts one after the other. Those for later versions are skipped.
 class PartReader {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <tactus/deformable/deformable_encoder.h>
@@ -16,9 +17,10 @@ namespace {
 constexpr std::uint64_t kSilence = 1'000'000;      // [us] without acknowledgements, at least, before an end sends little
 constexpr std::uint64_t kSeldom = 50'000;          // [us] from datagram to datagram then
 constexpr std::uint64_t kSparing = 1024;           // the wait is this part of the silence at least: numbers last for 17 minutes
-constexpr std::uint32_t kHeavyLoss = 65536 / 20;   // from here on, what is lost goes twice again
 constexpr std::uint32_t kSomeLoss = 65536 / 100;   // above, no acknowledgement waits long
-constexpr std::int64_t kSlowestCopy = 80'000;      // [us] until the other end has it
+constexpr std::int64_t kSlowestCopy = 80'000;      // [us] until the other end has the copy of a shape, if it shows later ticks
+constexpr std::uint64_t kLatestShape = 120'000;    // [us] from the first sending of a shape to its copy
+constexpr std::uint64_t kLatestRigid = 400'000;    // [us] the same of rigid objects, at least
 constexpr std::uint64_t kFirstPatience = 250'000;  // [us] while no round trip is known
 
 std::size_t largest_packet(const Scene& scene) {
@@ -31,12 +33,13 @@ std::size_t largest_packet(const Scene& scene) {
 }  // namespace
 
 void Exchange::send_with(Sender coder) {
-  if (!coder.scene()->deformables.empty()) resends_.emplace(largest_packet(*coder.scene()));
+  if (direction_ == Direction::down) resends_.emplace(largest_packet(*coder.scene()));
   sender.emplace(std::move(coder));
 }
 
 void Exchange::receive_with(Receiver decoder) {
   fragments_ = Fragments(largest_packet(*decoder.scene()));
+  if (direction_ == Direction::up && !decoder.scene()->moving().empty()) held_.emplace(max_rigid_packet(*decoder.scene()) + 1);
   receiver.emplace(std::move(decoder));
 }
 
@@ -98,6 +101,7 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
     if (pieces) pieces->arrived(number);
     const Slot& slot = slots_[number % slots_.size()];
     if (!sender || slot.number != number) return;
+    for (std::size_t i = 0; i < slot.count && resends_; ++i) resends_->arrived(slot.kept[i], number);
     const bool waits = slot.fragment.number != 0 &&
                        !sent_fragments_.arrived(slot.fragment.number, slot.packets[0].substream, slot.fragment.index);
     for (std::size_t i = 0; i < slot.count && !waits; ++i)
@@ -108,7 +112,7 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
     if (pieces) pieces->lost(number);
     const Slot& slot = slots_[number % slots_.size()];
     wants_key_ = wants_key_ || (slot.number == number && slot.layered);
-    if (resends_ && copies_come_in_time()) resends_->lost(number, reading.now, sent_.loss() > kHeavyLoss ? 2 : 1);
+    lose(number, reading.now);
   };
   TACTUS_CHECK(sent_.acknowledge(said, reading.now, arrived, lost));
   if (path && direction_ == Direction::up)
@@ -123,6 +127,7 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
   const auto decoded = receiver && number > 0 ? receiver->push_numbered(number, packet) : tl::unexpected(Error{});
   if (!decoded) {
     if (receiver && number > 0 && receiver->holds(number, packet)) return true;  // it came before
+    if (hold(number, packet, decoded.error(), reading.now)) return true;
     ++traffic_.packets_refused;
     return false;
   }
@@ -131,16 +136,67 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
     ++traffic_.packets_refused;
     return false;
   }
-  ++traffic_.packets_heard;
-  traffic_.payload_heard += packet.size();
+  const bool is_rigid = decoded->substream == 0;
   if (is_of_deformable(*receiver->scene(), decoded->substream)) reading.asks = Asks::now;
-  reading.heard.oldest = std::min(reading.heard.oldest.value_or(decoded->tick), decoded->tick);
-  const bool newest = receiver->tick(decoded->substream) == decoded->tick;
-  if (direction_ == Direction::up && number % kHashEvery == 0 && newest && decoded->layer == Layer::all) {
-    const auto hash = static_cast<std::uint32_t>(receiver->state_hash(decoded->substream));
-    reading.heard.hash = HashPart{static_cast<std::uint8_t>(decoded->substream), static_cast<std::uint16_t>(number), hash};
-  }
+  if (is_rigid && number < std::min(rigid_heard_, reading.heard.number)) reading.heard.is_copy = true;
+  if (!reading.heard.is_copy) reading.heard.oldest = std::min(reading.heard.oldest.value_or(decoded->tick), decoded->tick);
+  took(*decoded, packet.size(), reading);
+  if (held_ && is_rigid && !held_->empty()) take_held(reading);
   return true;
+}
+
+/// What every decoded packet changes.
+bool Exchange::took(const DecodedPacket& decoded, std::size_t size, Reading& reading) noexcept {
+  ++traffic_.packets_heard;
+  traffic_.payload_heard += size;
+  const bool newest = receiver->tick(decoded.substream) == decoded.tick;
+  if (direction_ == Direction::up && decoded.number % kHashEvery == 0 && newest && decoded.layer == Layer::all) {
+    const auto hash = static_cast<std::uint32_t>(receiver->state_hash(decoded.substream));
+    reading.heard.hash =
+        HashPart{static_cast<std::uint8_t>(decoded.substream), static_cast<std::uint16_t>(decoded.number), hash};
+  }
+  if (decoded.substream != 0) return true;
+  newest_rigid_ = std::max(newest_rigid_, decoded.number);
+  rigid_heard_ = std::max(rigid_heard_, newest_rigid_);
+  if (repaired_ && held_ && decoded.baseline > 0)
+    for (std::uint64_t number = decoded.baseline + 1; number < decoded.number; ++number) receiver->skip_number(number);
+  return true;
+}
+
+/// A packet of rigid objects whose baseline is not there waits for it. One that is older than what is decoded is no use any more.
+bool Exchange::hold(std::uint64_t number, std::span<const std::uint8_t> packet, const Error& error, std::uint64_t now) noexcept {
+  if (!held_ || !repaired_ || number == 0 || error.code != Errc::state) return false;
+  const auto part = split_substream(*receiver->scene(), packet);
+  if (!part || part->substream != 0) return false;
+  if (number <= newest_rigid_) return true;
+  held_->remove_if([now](const HeldPackets::Held& held) { return now > held.at + HeldPackets::kLongest; });
+  if (!held_->hold(number, packet, now)) return false;
+  rigid_heard_ = std::max(rigid_heard_, number);
+  return true;
+}
+
+/// Those whose baseline has come, in the order of their numbers: each may be the baseline of the next.
+void Exchange::take_held(Reading& reading) noexcept {
+  held_->remove_if([&](const HeldPackets::Held& held) {
+    if (held.number <= newest_rigid_) return true;  // older than a key packet
+    const auto decoded = receiver->push_numbered(held.number, held_->bytes(held));
+    if (!decoded) {
+      const bool waits = decoded.error().code == Errc::state;
+      if (!waits) ++traffic_.packets_refused;
+      return !waits;
+    }
+    reading.heard.tick = std::max(reading.heard.tick.value_or(decoded->tick), decoded->tick);
+    took(*decoded, held.size, reading);
+    const Heard::Arrival arrival{decoded->tick, held.at};
+    const auto lead = [rate = receiver->scene()->tick_rate](const Heard::Arrival& a) {
+      return static_cast<std::int64_t>(a.at) - a.tick * 1'000'000 / rate;
+    };
+    if (!reading.heard.held) reading.heard.held = {arrival, arrival};
+    auto& [fastest, slowest] = *reading.heard.held;
+    if (lead(arrival) < lead(fastest)) fastest = arrival;
+    if (lead(arrival) > lead(slowest)) slowest = arrival;
+    return true;
+  });
 }
 
 Result<void> Exchange::take(const FragmentPart& fragment, Reading& reading) noexcept {
@@ -161,8 +217,10 @@ void Exchange::finish(const Reading& reading) noexcept {
 // Out
 
 std::optional<std::uint64_t> Exchange::due() const noexcept {
-  const auto acknowledgement = received_.due(), copy = resends_ ? resends_->due() : std::nullopt;
-  return acknowledgement && copy ? std::min(*acknowledgement, *copy) : acknowledgement ? acknowledgement : copy;
+  std::optional<std::uint64_t> out = received_.due();
+  for (const auto& due : {resends_ ? resends_->due() : std::nullopt, tail_due()})
+    if (due) out = std::min(out.value_or(next_send(*due)), next_send(*due));
+  return out;
 }
 
 /// Of packets that nobody took, the numbers are lost: the next ones must have others.
@@ -171,6 +229,7 @@ void Exchange::give_up(std::uint64_t now) noexcept {
     const Packet& packet = packets_[next_packet_];
     ++traffic_.packets_held;
     wants_key_ = wants_key_ || packet.layer != Layer::all;
+    wants_chain_ = wants_chain_ || (repairs_ && packet.substream == 0);
     while (sent_.next() && *sent_.next() <= packet.number) skip_number(now);
   }
   packets_ = {};
@@ -188,9 +247,13 @@ bool Exchange::misses_layers(std::uint64_t now) const noexcept {
   return layered_ > sent_.highest_acknowledged() && now > std::max(progress_at_, key_wanted_at_) + 2 * patience();
 }
 
+/// Nothing was acknowledged for long.
+bool Exchange::is_cut_off(std::uint64_t now) const noexcept {
+  return asked_ > sent_.highest_acknowledged() && now > progress_at_ + std::max(kSilence, 4 * patience());
+}
+
 std::uint64_t Exchange::next_send(std::uint64_t wanted) const noexcept {
-  const bool waits = asked_ > sent_.highest_acknowledged() && wanted > progress_at_ + std::max(kSilence, 4 * patience());
-  if (!waits) return wanted;
+  if (!is_cut_off(wanted)) return wanted;
   const std::uint64_t silent = std::max(sent_at_, progress_at_) - progress_at_;
   return std::max(wanted, sent_at_ + std::max(kSeldom, silent / kSparing));
 }
@@ -208,6 +271,7 @@ Result<std::span<const Packet>> Exchange::submit(std::uint64_t now, std::int64_t
     sender->request_key();
     key_wanted_at_ = now;
   }
+  begin_chain(now);
   TACTUS_TRY(packets_, sender->encode_numbered(*number, tick, truth));
   if (path && direction_ == Direction::up && !packets_.empty()) path->add(packets_[0].number, sender->objects()[0]);
   return packets_;
@@ -224,7 +288,8 @@ std::optional<std::uint64_t> Exchange::begin(std::uint64_t now, bool wanted) noe
 
 bool Exchange::add_whole(const Packet& packet, std::uint64_t number, std::uint64_t now) noexcept {
   if (!writer_.add(PacketPart{number - packet.number, packet.bytes})) return false;
-  keep(number, packet, {.bytes = packet.bytes}, now);
+  Slot& slot = slots_[number % slots_.size()];
+  slot.kept[slot.count] = keep(number, packet, {.bytes = packet.bytes}, now);
   ++next_packet_;
   return true;
 }
@@ -236,28 +301,76 @@ bool Exchange::add_fragment(const Packet& packet, std::uint64_t number, std::uin
   const auto bytes = packet.bytes.subspan(begin, std::min(kFragmentSize, packet.bytes.size() - begin));
   if (!writer_.add(FragmentPart{number - packet.number, packet.substream, index, count, bytes})) return false;
   if (index == 0) sent_fragments_.send(packet, count);
-  slots_[number % slots_.size()].fragment = {packet.number, static_cast<std::uint16_t>(index)};
-  keep(number, packet, {index, count, bytes}, now);
+  Slot& slot = slots_[number % slots_.size()];
+  slot.fragment = {packet.number, static_cast<std::uint16_t>(index)};
+  slot.kept[slot.count] = keep(number, packet, {index, count, bytes}, now);
   next_fragment_ = (index + 1) % count;
   if (next_fragment_ == 0) ++next_packet_;
   return true;
 }
 
-void Exchange::keep(std::uint64_t number, const Packet& packet, const Resends::Portion& portion, std::uint64_t now) noexcept {
+bool Exchange::may_copy(std::uint64_t substream) const noexcept {
+  return substream == 0 ? repairs_ : is_of_deformable(*sender->scene(), substream);
+}
+
+std::uint16_t Exchange::keep(std::uint64_t number, const Packet& packet, const Resends::Portion& portion,
+                             std::uint64_t now) noexcept {
   traffic_.payload_sent += portion.bytes.size();
-  const bool may_come_again = is_of_deformable(*sender->scene(), packet.substream) && packet.layer == Layer::all;
-  if (resends_ && may_come_again) resends_->keep(number, packet, portion, now);
+  if (!resends_ || !may_copy(packet.substream) || packet.layer != Layer::all) return Resends::kNone;
+  if (packet.substream == 0 && packet.key && portion.index == 0) resends_->settle_rigid(packet.number);
+  return resends_->keep(number, packet, portion, now);
 }
 
 /// Or else clients would show the past for nothing.
-bool Exchange::copies_come_in_time() const noexcept {
+bool Exchange::shapes_come_in_time() const noexcept {
   const auto& trip = sent_.round_trip();
-  return trip && trip->smoothed + 4 * trip->variation + trip->least / 2 <= kSlowestCopy;
+  const auto most = std::max(kSlowestCopy, static_cast<std::int64_t>(playout_));
+  return trip && trip->smoothed + 4 * trip->variation + trip->least / 2 <= most;
+}
+
+/// A shape has a use until its tick is shown. All packets of rigid objects wait for one that is missing; but after an outage a key
+/// packet is there sooner than all of them.
+Resends::Latest Exchange::latest() const noexcept {
+  return {.rigid = std::max({kLatestRigid, 4 * patience(), 2 * playout_}),
+          .shape = shapes_come_in_time() ? std::max(kLatestShape, playout_) : 0,
+          .way = static_cast<std::uint64_t>(sent_.round_trip()->least / 2)};
+}
+
+void Exchange::lose(std::uint64_t number, std::uint64_t now) noexcept {
+  const Slot& slot = slots_[number % slots_.size()];
+  if (!resends_ || slot.number != number) return;
+  for (std::size_t i = 0; i < slot.count; ++i)
+    resends_->lost(slot.kept[i], number, now, 2);
 }
 
 const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
-  if (!resends_ || !sent_.round_trip()) return nullptr;
-  return resends_->next(now, static_cast<std::uint64_t>(sent_.round_trip()->least / 2));
+  if (!resends_ || !sent_.round_trip() || !may_send(now)) return nullptr;
+  return resends_->next(now, latest());
+}
+
+/// [us] when the newest datagram that asks counts as lost: none after it would tell.
+std::optional<std::uint64_t> Exchange::tail_due() const noexcept {
+  if (!repairs_ || !sent_.round_trip() || asked_ <= sent_.highest_acknowledged()) return std::nullopt;
+  return std::max(asked_at_, tail_at_) + patience();
+}
+
+void Exchange::watch_tail(std::uint64_t now) noexcept {
+  const auto due = tail_due();
+  if (!due || now < *due) return;
+  tail_at_ = now;
+  lose(asked_, now);
+}
+
+void Exchange::want_key(std::uint64_t now) noexcept {
+  if (now >= chain_at_ + patience()) wants_chain_ = true;
+}
+
+void Exchange::begin_chain(std::uint64_t now) noexcept {
+  if (resends_ && resends_->is_broken()) wants_chain_ = true;
+  if (repairs_ && is_cut_off(now)) wants_chain_ = true;  // the first that gets through is then enough
+  if (!std::exchange(wants_chain_, false)) return;
+  sender->request_rigid_key();
+  chain_at_ = now;
 }
 
 /// As many as fit of the packets that are lost and not too old, or one fragment.
@@ -267,9 +380,9 @@ bool Exchange::add_copies(std::uint64_t number, std::uint64_t now) noexcept {
   while (slot.count < slot.packets.size()) {
     const Resends::Kept* const copy = next_copy(now);
     if (copy == nullptr || (copy->count > 1 && slot.count > 0) || !add_copy(*copy, number)) break;
-    traffic_.payload_sent += copy->bytes.size();
+    traffic_.payload_sent += copy->size;
+    slot.kept[slot.count] = resends_->sent(*copy, number, now);
     slot.packets[slot.count++] = {copy->substream, copy->sequence};
-    resends_->sent(*copy, now);
     added = true;
   }
   return added;
@@ -278,11 +391,11 @@ bool Exchange::add_copies(std::uint64_t number, std::uint64_t now) noexcept {
 bool Exchange::add_copy(const Resends::Kept& copy, std::uint64_t number) noexcept {
   const std::uint64_t back = number - copy.number;
   if (copy.count == 1) {
-    if (!writer_.add(PacketPart{back, copy.bytes})) return false;
+    if (!writer_.add(PacketPart{back, resends_->bytes(copy)})) return false;
     ++traffic_.packets_sent;
     return true;
   }
-  if (!writer_.add(FragmentPart{back, copy.substream, copy.index, copy.count, copy.bytes})) return false;
+  if (!writer_.add(FragmentPart{back, copy.substream, copy.index, copy.count, resends_->bytes(copy)})) return false;
   slots_[number % slots_.size()].fragment = {copy.number, copy.index};
   return true;
 }

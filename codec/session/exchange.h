@@ -38,8 +38,10 @@ class Exchange {
   std::optional<PieceSender> pieces;  ///< of the declaration, until all have arrived
   std::shared_ptr<DevicePath> path;   ///< of the device whose packets go up; none: it drives nothing
 
-  void send_with(Sender coder);         ///< allocates if the scene has deformable objects
-  void receive_with(Receiver decoder);  ///< allocates if the largest packet of the scene needs fragments
+  void send_with(Sender coder);  ///< allocates
+  /// From now on packets of rigid objects build on the one before: what is lost goes again until it arrives, or they begin anew.
+  void repair() noexcept { repairs_ = true; }
+  void receive_with(Receiver decoder);  ///< allocates, to hold packets and to put fragments together
 
   // In
 
@@ -48,6 +50,13 @@ class Exchange {
     std::uint64_t number = 0;                ///< of the datagram
     std::optional<std::int64_t> tick;        ///< newest of the packets that were decoded
     std::optional<std::int64_t> oldest;      ///< oldest of them
+    bool is_copy = false;                    ///< one of rigid objects was a copy: its tick tells nothing about the way
+    /// Of the packets that were held until now, those with the fastest and the slowest way.
+    struct Arrival {
+      std::int64_t tick = 0;
+      std::uint64_t at = 0;  ///< [us]
+    };
+    std::optional<std::array<Arrival, 2>> held;
     std::optional<HashPart> hash;            ///< to be told to the sender
     std::optional<std::int64_t> round_trip;  ///< [us] that its acknowledgement measured
   };
@@ -57,7 +66,7 @@ class Exchange {
   template <class Take>
   Result<Heard> handle(std::uint64_t now, const Numbered& datagram, Take&& take) noexcept {
     TACTUS_TRY(const std::uint64_t number, receive(now, datagram));
-    Reading reading{{.number = number, .tick = {}, .oldest = {}, .hash = {}, .round_trip = {}}, now};
+    Reading reading{{.number = number, .tick = {}, .oldest = {}, .is_copy = false, .held = {}, .hash = {}, .round_trip = {}}, now};
     PartReader parts = datagram.parts(direction_ == Direction::up ? Direction::down : Direction::up);
     for (;;) {
       TACTUS_TRY(const std::optional<Part> part, parts.next());
@@ -80,6 +89,7 @@ class Exchange {
   ///      extras  bool(DatagramWriter&, number), adds parts of types 2 to 6; true: the other end must acknowledge them
   template <class Extras>
   std::optional<std::span<const std::uint8_t>> poll(std::uint64_t now, bool wanted, Extras&& extras) noexcept {
+    watch_tail(now);
     if (!wanted && !has_packets() && !is_acknowledgement_due(now) && !next_copy(now)) return std::nullopt;
     const auto number = begin(now, wanted);
     if (!number) return std::nullopt;
@@ -104,6 +114,16 @@ class Exchange {
   std::uint64_t asked_at() const noexcept { return asked_at_; }  ///< [us] when the last one went that must be acknowledged
   void hold_tick() noexcept { ++traffic_.ticks_held; }           ///< instead of submit(): nothing may be sent
   const SentNumbers& sent() const noexcept { return sent_; }
+  /// [us] since when the first packet that is held waits; nothing: none is held.
+  std::optional<std::uint64_t> waits_since() const noexcept {
+    return held_ ? held_->waits_since() : std::nullopt;
+  }
+  /// The client has asked for a key packet of the rigid objects. It gets one, but not more often than one can be answered.
+  void want_key(std::uint64_t now) noexcept;
+  void set_playout(std::uint64_t delay) noexcept { playout_ = delay; }  ///< [us] of the client, as it has said
+  /// On what packets of rigid objects that come build: numbers without one are then not missing.
+  void expect(bool repaired) noexcept { repaired_ = repaired; }
+  bool is_repaired() const noexcept { return repaired_; }
   std::uint64_t patience() const noexcept;  ///< [us] after which an acknowledgement should have come
   const Traffic& traffic() const noexcept { return traffic_; }
 
@@ -124,6 +144,7 @@ class Exchange {
   struct Slot {
     std::uint64_t number = 0;
     std::array<PacketName, 8> packets{};
+    std::array<std::uint16_t, 8> kept{};  // where to find them for copies
     FragmentName fragment{};  // of the only packet
     std::uint8_t count = 0;
     bool layered = false;
@@ -134,6 +155,9 @@ class Exchange {
   Result<void> acknowledged(const Acknowledgement& said, Reading& reading) noexcept;
   Result<void> take(const FragmentPart& fragment, Reading& reading) noexcept;
   bool decode(std::uint64_t number, std::span<const std::uint8_t> packet, Reading& reading) noexcept;
+  bool hold(std::uint64_t number, std::span<const std::uint8_t> packet, const Error& error, std::uint64_t now) noexcept;
+  void take_held(Reading& reading) noexcept;
+  bool took(const DecodedPacket& decoded, std::size_t size, Reading& reading) noexcept;
   void accept(std::uint64_t number, const Reading& reading) noexcept;
   void finish(const Reading& reading) noexcept;
   void report_link() noexcept;
@@ -147,8 +171,15 @@ class Exchange {
   bool add_packets(std::uint64_t number, std::uint64_t now) noexcept;
   bool add_whole(const Packet& packet, std::uint64_t number, std::uint64_t now) noexcept;
   bool add_fragment(const Packet& packet, std::uint64_t number, std::uint64_t now) noexcept;
-  void keep(std::uint64_t number, const Packet& packet, const Resends::Portion& portion, std::uint64_t now) noexcept;
-  bool copies_come_in_time() const noexcept;
+  std::uint16_t keep(std::uint64_t number, const Packet& packet, const Resends::Portion& portion, std::uint64_t now) noexcept;
+  bool shapes_come_in_time() const noexcept;
+  bool may_copy(std::uint64_t substream) const noexcept;
+  Resends::Latest latest() const noexcept;
+  void lose(std::uint64_t number, std::uint64_t now) noexcept;
+  std::optional<std::uint64_t> tail_due() const noexcept;
+  void watch_tail(std::uint64_t now) noexcept;
+  void begin_chain(std::uint64_t now) noexcept;
+  bool is_cut_off(std::uint64_t now) const noexcept;
   const Resends::Kept* next_copy(std::uint64_t now) noexcept;
   bool add_copies(std::uint64_t number, std::uint64_t now) noexcept;
   bool add_copy(const Resends::Kept& copy, std::uint64_t number) noexcept;
@@ -163,6 +194,14 @@ class Exchange {
   std::array<Slot, SentNumbers::kRemembered> slots_{};
   SentFragments sent_fragments_;
   std::optional<Resends> resends_;   // none: no packet goes twice
+  std::optional<HeldPackets> held_;  // none: what lacks its baseline is refused
+  std::uint64_t newest_rigid_ = 0;   // number of the newest packet of rigid objects that was decoded
+  std::uint64_t rigid_heard_ = 0;    // the same, or that is held
+  bool repairs_ = false, repaired_ = true;
+  std::uint64_t playout_ = 0;        // [us] of the client
+  std::uint64_t tail_at_ = 0;        // [us] when the newest datagram that asks was last taken for lost
+  bool wants_chain_ = false;         // packets of rigid objects must begin anew
+  std::uint64_t chain_at_ = 0;       // [us] when they did
   std::span<const Packet> packets_;  // of the last submit()
   std::size_t next_packet_ = 0, next_fragment_ = 0;
   std::uint64_t heard_at_, sent_at_;

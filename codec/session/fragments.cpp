@@ -132,65 +132,144 @@ Result<std::span<const std::uint8_t>> PieceReceiver::declaration() const noexcep
 
 namespace {
 
-constexpr std::uint64_t kLatest = 120'000;  // [us] from the first sending to the arrival of a copy
-constexpr std::uint64_t kApart = 10'000;    // [us]
+constexpr std::uint64_t kApart = 10'000;  // [us]
 
 }  // namespace
 
-Resends::Resends(std::size_t largest) : kept_(kKept + std::min((largest + kFragmentSize - 1) / kFragmentSize, kMostFragments)) {
-  for (Kept& kept : kept_) kept.bytes.reserve(kFragmentSize);
+Resends::Resends(std::size_t largest)
+    : kept_(kKept + std::min((largest + kFragmentSize - 1) / kFragmentSize, kMostFragments)),
+      bytes_(kBytes + std::min(largest, kFragmentSize * kMostFragments)) {
+  waiting_.reserve(kept_.size());
 }
 
-void Resends::keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now) noexcept {
-  Kept& kept = kept_[next_];
-  next_ = (next_ + 1) % kept_.size();
-  waiting_ -= kept.copies;
-  kept.datagram = datagram;
-  kept.number = packet.number;
-  kept.time = now;
-  kept.substream = static_cast<std::uint16_t>(packet.substream);
-  kept.sequence = packet.sequence;
-  kept.index = static_cast<std::uint16_t>(portion.index);
-  kept.count = static_cast<std::uint16_t>(portion.count);
-  kept.copies = 0;
-  kept.bytes.assign(portion.bytes.begin(), portion.bytes.end());
+void Resends::unqueue(std::uint16_t place) noexcept {
+  std::erase(waiting_, place);
+  kept_[place].copies = 0;
 }
 
-void Resends::lost(std::uint64_t datagram, std::uint64_t now, unsigned copies) noexcept {
-  for (Kept& kept : kept_) {
-    if (kept.datagram != datagram) continue;
-    waiting_ += copies - kept.copies;
-    kept.copies = copies;
-    kept.due = now;
-  }
+void Resends::settle(Kept& kept) noexcept {
+  kept.is_settled = true;
+  if (kept.copies > 0) unqueue(static_cast<std::uint16_t>(&kept - kept_.data()));
 }
 
-const Resends::Kept* Resends::next(std::uint64_t now, std::uint64_t way) noexcept {
-  if (waiting_ == 0) return nullptr;
+/// The oldest gives way.
+void Resends::pop() noexcept {
+  Kept& oldest = kept_[first_];
+  is_broken_ = is_broken_ || (!oldest.is_settled && oldest.substream == 0);
+  settle(oldest);
+  oldest.datagrams = {};
+  first_ = (first_ + 1) % kept_.size();
+  --count_;
+}
+
+std::uint16_t Resends::keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now) noexcept {
+  const std::size_t size = portion.bytes.size(), capacity = bytes_.size();
+  if (end_ % capacity + size > capacity) end_ += capacity - end_ % capacity;
+  while (count_ == kept_.size() || (count_ > 0 && end_ + size > kept_[first_].begin + capacity)) pop();
+  const std::size_t place = (first_ + count_++) % kept_.size();
+  kept_[place] = {.datagrams = {datagram},
+                  .number = packet.number,
+                  .time = now,
+                  .due = now,
+                  .begin = end_,
+                  .substream = static_cast<std::uint16_t>(packet.substream),
+                  .sequence = packet.sequence,
+                  .index = static_cast<std::uint16_t>(portion.index),
+                  .count = static_cast<std::uint16_t>(portion.count),
+                  .size = static_cast<std::uint16_t>(size)};
+  std::ranges::copy(portion.bytes, bytes_.begin() + static_cast<std::ptrdiff_t>(end_ % capacity));
+  end_ += size;
+  return static_cast<std::uint16_t>(place);
+}
+
+void Resends::arrived(std::uint16_t place, std::uint64_t datagram) noexcept {
+  if (place == kNone) return;
+  Kept& kept = kept_[place];
+  if (std::ranges::find(kept.datagrams, datagram) != kept.datagrams.end()) settle(kept);
+}
+
+void Resends::lost(std::uint16_t place, std::uint64_t datagram, std::uint64_t now, unsigned copies) noexcept {
+  if (place == kNone) return;
+  Kept& kept = kept_[place];
+  if (kept.is_settled || kept.datagrams[0] != datagram) return;
+  if (kept.copies == 0) waiting_.push_back(place);
+  kept.copies = static_cast<std::uint8_t>(copies);
+  kept.due = now;
+}
+
+const Resends::Kept* Resends::next(std::uint64_t now, const Latest& latest) noexcept {
   const Kept* out = nullptr;
-  for (Kept& kept : kept_) {
-    if (kept.copies > 0 && now + way > kept.time + kLatest) {
-      waiting_ -= kept.copies;
-      kept.copies = 0;
+  for (std::size_t i = 0; i < waiting_.size();) {
+    Kept& kept = kept_[waiting_[i]];
+    const bool is_rigid = kept.substream == 0;
+    if (now + latest.way > kept.time + (is_rigid ? latest.rigid : latest.shape)) {
+      is_broken_ = is_broken_ || is_rigid;
+      settle(kept);
+      continue;
     }
-    if (kept.copies > 0 && kept.due <= now && (out == nullptr || kept.number < out->number)) out = &kept;
+    if (kept.due <= now && (out == nullptr || kept.number < out->number)) out = &kept;
+    ++i;
   }
   return out;
 }
 
-void Resends::sent(const Kept& copy, std::uint64_t now) noexcept {
-  Kept& kept = kept_[static_cast<std::size_t>(&copy - kept_.data())];
-  --kept.copies;
-  --waiting_;
+std::uint16_t Resends::sent(const Kept& copy, std::uint64_t datagram, std::uint64_t now) noexcept {
+  const auto place = static_cast<std::uint16_t>(&copy - kept_.data());
+  Kept& kept = kept_[place];
+  std::ranges::copy_backward(kept.datagrams.begin(), kept.datagrams.end() - 1, kept.datagrams.end());
+  kept.datagrams[0] = datagram;
   kept.due = now + kApart;
+  if (kept.copies == 1) unqueue(place);
+  else --kept.copies;
+  return place;
 }
 
 std::optional<std::uint64_t> Resends::due() const noexcept {
   std::optional<std::uint64_t> out;
-  if (waiting_ == 0) return out;
-  for (const Kept& kept : kept_)
-    if (kept.copies > 0) out = std::min(out.value_or(kept.due), kept.due);
+  for (const std::uint16_t place : waiting_) out = std::min(out.value_or(kept_[place].due), kept_[place].due);
   return out;
+}
+
+void Resends::settle_rigid(std::uint64_t number) noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    Kept& kept = kept_[(first_ + i) % kept_.size()];
+    if (kept.substream == 0 && kept.number < number) settle(kept);
+  }
+  is_broken_ = false;
+}
+
+// ==== held packets ====
+
+/// So that the bytes begin at 0 without gaps.
+void HeldPackets::compact() noexcept {
+  order_.clear();
+  for (std::size_t i = 0; i < held_.size(); ++i) order_.push_back(static_cast<std::uint16_t>(i));
+  std::ranges::sort(order_, {}, [this](std::uint16_t i) { return held_[i].begin; });
+  end_ = 0;
+  for (const std::uint16_t i : order_) {
+    Held& held = held_[i];
+    const auto from = bytes_.begin() + static_cast<std::ptrdiff_t>(held.begin);
+    std::copy(from, from + static_cast<std::ptrdiff_t>(held.size), bytes_.begin() + static_cast<std::ptrdiff_t>(end_));
+    held.begin = end_;
+    end_ += held.size;
+  }
+}
+
+bool HeldPackets::hold(std::uint64_t number, std::span<const std::uint8_t> packet, std::uint64_t now) noexcept {
+  const auto place = std::ranges::lower_bound(held_, number, {}, &Held::number);
+  if (place != held_.end() && place->number == number) return true;
+  if (held_.size() == kMost) return false;
+  if (end_ + packet.size() > bytes_.size()) compact();
+  if (end_ + packet.size() > bytes_.size()) return false;
+  std::ranges::copy(packet, bytes_.begin() + static_cast<std::ptrdiff_t>(end_));
+  held_.insert(place, {number, now, end_, packet.size()});
+  end_ += packet.size();
+  return true;
+}
+
+std::optional<std::uint64_t> HeldPackets::waits_since() const noexcept {
+  if (held_.empty()) return std::nullopt;
+  return std::ranges::min_element(held_, {}, &Held::at)->at;
 }
 
 }  // namespace tactus

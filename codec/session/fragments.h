@@ -2,6 +2,7 @@
 /// Packets and declarations in parts that fit a datagram, and what goes again. Integers. Internal to the library.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <tactus/base/result.h>
@@ -163,42 +165,112 @@ class PieceReceiver {
 };
 
 // ==== resends ====
-// Packets of deformable objects that went out, whole or in fragments, so that what is lost goes again while their tick may still be shown.
-// spec/70-session.md section 4.2.
+// Packets that went out, whole or in fragments, so that what is lost goes again as it was. spec/70-session.md section 4.2.
 
 class Resends {
  public:
+  static constexpr std::uint16_t kNone = 0xffff;  ///< no place
+
   /// What one datagram brought of a packet.
   struct Portion {
     std::size_t index = 0, count = 1;  ///< of fragments; count 1: the whole packet
     std::span<const std::uint8_t> bytes;
   };
   struct Kept {
-    std::uint64_t datagram = 0, number = 0;  // that it first went with; of the packet
-    std::uint64_t time = 0, due = 0;         // [us] when it first went; when a copy may go
+    std::array<std::uint64_t, 4> datagrams{};  // that brought it, the newest first; 0: none
+    std::uint64_t number = 0;                  // of the packet
+    std::uint64_t time = 0, due = 0;           // [us] when it first went; when a copy may go
+    std::uint64_t begin = 0;                   // of its bytes
     std::uint16_t substream = 0, sequence = 0;
-    std::uint16_t index = 0, count = 1;  // as in Portion
-    unsigned copies = 0;                 // that are to go
-    std::vector<std::uint8_t> bytes{};
+    std::uint16_t index = 0, count = 1, size = 0;  // index, count: as in Portion
+    std::uint8_t copies = 0;                       // that are to go
+    bool is_settled = false;                       // it has arrived, or nobody needs it any more
+  };
+  /// [us] from the first sending of a packet to the arrival of its copy, at most.
+  struct Latest {
+    std::uint64_t rigid = 0, shape = 0;
+    std::uint64_t way = 0;  ///< from here to the other end
   };
 
-  /// Allocates for kKept datagrams and those of one packet more.   in  largest  packet [bytes]
+  /// Allocates for kKept datagrams of 64 KiB in all and one packet more.   in  largest  packet [bytes]
   explicit Resends(std::size_t largest);
 
-  void keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now) noexcept;
-  /// in   copies  that should go, 10 ms apart
-  void lost(std::uint64_t datagram, std::uint64_t now, unsigned copies) noexcept;
-  /// The copy that goes next; it may be too late for it.
-  /// in   way  [us] from here to the other end      time O(datagrams kept) if something is to go, else O(1)
-  const Kept* next(std::uint64_t now, std::uint64_t way) noexcept;
-  void sent(const Kept& copy, std::uint64_t now) noexcept;  ///< pre  next() has just returned it
-  std::optional<std::uint64_t> due() const noexcept;        ///< [us] when the next copy may go; nothing: none is to go
+  /// out  its place, for arrived() and lost() of the datagram
+  std::uint16_t keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now) noexcept;
+  /// The datagram that brought what has this place.
+  void arrived(std::uint16_t place, std::uint64_t datagram) noexcept;
+  /// in   copies  that should go, 10 ms apart; none while a newer datagram with it is on its way
+  void lost(std::uint16_t place, std::uint64_t datagram, std::uint64_t now, unsigned copies) noexcept;
+  /// The copy that goes next.   time O(packets that wait)
+  const Kept* next(std::uint64_t now, const Latest& latest) noexcept;
+  std::span<const std::uint8_t> bytes(const Kept& kept) const noexcept {
+    return std::span(bytes_).subspan(static_cast<std::size_t>(kept.begin % bytes_.size()), kept.size);
+  }
+  /// It went in this datagram, which takes over from the one before.   pre  next() has just returned it   out  its place
+  std::uint16_t sent(const Kept& copy, std::uint64_t datagram, std::uint64_t now) noexcept;
+  std::optional<std::uint64_t> due() const noexcept;  ///< [us] when the next copy may go; nothing: none is to go
+
+  /// A packet of the rigid objects will not arrive, or so late that it is no use: all after it wait. True once.
+  bool is_broken() noexcept { return std::exchange(is_broken_, false); }
+  /// Rigid packets below this number need not arrive any more.   time O(kept)
+  void settle_rigid(std::uint64_t number) noexcept;
 
  private:
-  static constexpr std::size_t kKept = 64;
+  static constexpr std::size_t kKept = 1024, kBytes = 65536;
+  void pop() noexcept;
+  void settle(Kept& kept) noexcept;
+  void unqueue(std::uint16_t place) noexcept;
+
   std::vector<Kept> kept_;  // a ring
-  std::size_t next_ = 0;
-  unsigned waiting_ = 0;  // copies
+  std::vector<std::uint8_t> bytes_;
+  std::vector<std::uint16_t> waiting_;  // places of what has copies to go
+  std::size_t first_ = 0, count_ = 0;
+  std::uint64_t end_ = 0;  // of the bytes
+  bool is_broken_ = false;
+};
+
+// ==== held packets ====
+// Packets of the rigid objects whose baseline is not there yet. spec/70-session.md section 4.4.
+
+class HeldPackets {
+ public:
+  static constexpr std::size_t kMost = 1024, kBytes = 65536;  ///< packets; [bytes], or one packet if that is larger
+  static constexpr std::uint64_t kLongest = 2'000'000;        ///< [us]
+
+  struct Held {
+    std::uint64_t number = 0;
+    std::uint64_t at = 0;  ///< [us] when it came
+    std::size_t begin = 0, size = 0;
+  };
+
+  explicit HeldPackets(std::size_t largest) : bytes_(std::max(kBytes, largest)) {
+    held_.reserve(kMost);
+    order_.reserve(kMost);
+  }
+
+  /// False: there is no room.   time O(held)
+  bool hold(std::uint64_t number, std::span<const std::uint8_t> packet, std::uint64_t now) noexcept;
+  bool empty() const noexcept { return held_.empty(); }
+  std::size_t size() const noexcept { return held_.size(); }
+  /// What is held, by number.
+  const Held& operator[](std::size_t i) const noexcept { return held_[i]; }
+  std::span<const std::uint8_t> bytes(const Held& held) const noexcept { return std::span(bytes_).subspan(held.begin, held.size); }
+  /// [us] when the first of them came; nothing: none is held.   time O(held)
+  std::optional<std::uint64_t> waits_since() const noexcept;
+  /// Forget those for which `done(held)` is true.
+  template <class Done>
+  void remove_if(Done&& done) noexcept {
+    std::erase_if(held_, done);
+    if (held_.empty()) end_ = 0;
+  }
+
+ private:
+  void compact() noexcept;
+
+  std::vector<Held> held_;
+  std::vector<std::uint8_t> bytes_;
+  std::vector<std::uint16_t> order_;
+  std::size_t end_ = 0;
 };
 
 }  // namespace tactus

@@ -22,6 +22,7 @@ constexpr unsigned kLeaves = 3;  // one of them should arrive
 
 ServerConnection::ServerConnection(std::uint16_t client, const SessionServerOptions& options) noexcept
     : client_(client),
+      loss_(options.loss),
       silence_(options.silence),
       headers_(options.headers),
       piece_time_(options.rate == 0 ? 0 : 8'000'000 * (kLargestDatagram + options.headers) / options.rate),
@@ -142,16 +143,29 @@ Result<void> ServerConnection::handle(const Part& part, std::uint64_t now) noexc
     if (buttons->tick >= buttons_.tick) buttons_ = *buttons;
   } else if (const auto* hash = std::get_if<HashPart>(&part)) {
     compare(*hash);
+  } else if (const auto* report = std::get_if<ReportPart>(&part)) {
+    take(*report, now);
   }
   return {};
+}
+
+void ServerConnection::take(const ReportPart& said, std::uint64_t now) noexcept {
+  constexpr std::uint64_t kLongest = 2'000;  // [ms]: no copy comes later
+  exchange_->set_playout(1000 * std::min(said.delay, kLongest));
+  if (said.key != 0) exchange_->want_key(now);
 }
 
 /// The client holds the declaration: from the next tick on it gets packets, and may send those of its device.
 Result<void> ServerConnection::go_live(std::uint64_t now) noexcept try {
   const auto next = next_state(server_transitions(), state_, SessionEvent::completed);
   if (!next) return {};
-  TACTUS_TRY(auto sender, Sender::create(served_.scene, served_.sender));
+  SenderOptions options = served_.sender;
+  if (repairs()) options.policy.baseline = Baseline::repaired;
+  TACTUS_TRY(auto sender, Sender::create(served_.scene, options));
   exchange_->send_with(std::move(sender));
+  tells_baselines_ = !repairs();
+  baselines_number_ = 0;
+  if (!tells_baselines_) exchange_->repair();
   congestion_.begin(now);
   if (join_.role == Role::participant) {
     TACTUS_TRY(exchange_->receiver, Receiver::create(served_.device));
@@ -239,10 +253,19 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
     }
     if (piece) add_piece(writer, number, now);
     if (seat_waits_) add_seat(writer, number, now);
-    return pace || piece || seat_waits_;
+    const bool baselines = tell_baselines(writer, number);
+    return pace || piece || seat_waits_ || baselines;
   });
   if (datagram && !piece) bucket_.take(static_cast<std::int64_t>(8 * (datagram->size() + headers_)), now);
   return datagram;
+}
+
+/// Each datagram says it until one has arrived.   out  true: it was said
+bool ServerConnection::tell_baselines(DatagramWriter& writer, std::uint64_t number) noexcept {
+  if (baselines_number_ > 0 && exchange_->sent().highest_acknowledged() >= baselines_number_) tells_baselines_ = false;
+  if (!tells_baselines_ || state_ != SessionState::live || !writer.add(BaselinesPart{1})) return false;
+  if (baselines_number_ == 0) baselines_number_ = number;
+  return true;
 }
 
 /// pre  there is one

@@ -88,7 +88,9 @@ class ServerConnection {
   Result<void> go_live(std::uint64_t now) noexcept;
   void measured(std::int64_t sample, std::uint64_t now) noexcept;
   void compare(const HashPart& said) noexcept;
+  void take(const ReportPart& said, std::uint64_t now) noexcept;
   std::optional<DeviceSample> driving_device(std::uint64_t now) noexcept;
+  bool tell_baselines(DatagramWriter& writer, std::uint64_t number) noexcept;
   bool wants_pace(std::uint64_t now) const noexcept { return pace_ && pace_->waits() && now >= pace_at_; }
   bool wants_seat(std::uint64_t now) const noexcept { return seat_waits_ && now >= seat_at_; }
   bool wants_piece(std::uint64_t now) const noexcept;
@@ -96,7 +98,12 @@ class ServerConnection {
   void add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
   void add_seat(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
 
+  bool repairs() const noexcept {
+    return loss_ == LossPolicy::repair || (loss_ == LossPolicy::by_role && join_.role == Role::observer);
+  }
+
   std::uint16_t client_;
+  LossPolicy loss_;
   std::uint64_t silence_, headers_, piece_time_;  // [us], [bytes] around a datagram, [us] of a piece at the rate
   double most_widening_;
   SessionState state_ = SessionState::closed;
@@ -125,6 +132,8 @@ class ServerConnection {
   std::int64_t next_tick_ = 0;      // of submit()
   std::uint64_t pace_at_ = 0;       // [us] when its changes go again
   ButtonsPart buttons_;
+  bool tells_baselines_ = false;        // the client does not know yet that they are the acknowledged ones
+  std::uint64_t baselines_number_ = 0;  // of the first datagram that said so
   std::uint8_t seat_ = 0;
   bool seat_waits_ = false;                      // for an acknowledgement
   std::uint64_t seat_at_ = 0, seat_number_ = 0;  // [us] when it goes again; of the first datagram with it, 0: none yet

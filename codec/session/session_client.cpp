@@ -25,6 +25,7 @@ constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
 constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
 constexpr std::uint64_t kUnanswered = 400'000;   // [us] at least, until a client joins again
 constexpr std::uint64_t kAsleep = 100'000;       // [us] without a call: the program, or its machine, stood still
+constexpr std::uint64_t kStuck = 500'000;        // [us] that packets wait for one that is missing before a key packet is asked for
 constexpr unsigned kLeaves = 3;                  // one of them should arrive
 
 /// An epoch, from its welcome on.
@@ -52,6 +53,8 @@ struct SessionClient::Impl {
   Result<void> handle(std::uint64_t now, const Numbered& said) noexcept;
   Result<void> take(const Part& part, const Exchange::Heard& heard, std::uint64_t now) noexcept;
   Result<void> complete(std::uint64_t now) noexcept;
+  void play(const Exchange::Heard& heard, std::uint64_t now) noexcept;
+  bool is_stuck(std::uint64_t now) const noexcept;
   std::uint64_t sign_due() const noexcept;
   std::uint64_t rejoin_due() const noexcept;
   bool has_buttons_due(std::uint64_t now) const noexcept;
@@ -196,9 +199,7 @@ Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& said
   if (heard.hash) hash = heard.hash;
   if (heard.tick) packet_at = now;
   rejoins = rejoins && current->exchange.unanswered();
-  if (current->playout) current->playout->heard(heard.number, heard.tick, now);
-  if (current->playout && heard.round_trip) current->playout->measured(*heard.round_trip, now);
-  if (current->playout && heard.oldest < heard.tick) current->playout->late(*heard.oldest, now);
+  if (current->playout) play(heard, now);
   if (buttons_wait && current->exchange.sent().highest_acknowledged() >= buttons_number && buttons_number > 0)
     buttons_wait = false;
   if (state == SessionState::receiving && current->pieces.is_complete()) return complete(now);
@@ -212,12 +213,36 @@ Result<void> SessionClient::Impl::take(const Part& part, const Exchange::Heard& 
       current->playout->told(static_cast<std::int64_t>(clock->time) - static_cast<std::int64_t>(current->welcome.start), now);
   } else if (const auto* piece = std::get_if<PiecePart>(&part)) {
     return current->pieces.take(piece->index, piece->bytes);
+  } else if (const auto* baselines = std::get_if<BaselinesPart>(&part)) {
+    current->exchange.expect(baselines->policy == 0);
   } else if (const auto* pace = std::get_if<PacePart>(&part)) {
     if (current->exchange.path) current->exchange.path->shift(pace->from, pace->offset);
   } else if (const auto* told = std::get_if<SeatPart>(&part)) {
     seat = told->seat;
   }
   return {};
+}
+
+/// What a datagram tells about what to show.
+void SessionClient::Impl::play(const Exchange::Heard& heard, std::uint64_t now) noexcept {
+  PlayoutClock& playout = *current->playout;
+  const Exchange& exchange = current->exchange;
+  playout.set_repair(exchange.is_repaired() ? exchange.sent().round_trip() : std::nullopt);
+  playout.waits(exchange.waits_since(), now);
+  playout.heard(heard.number, heard.is_copy ? std::nullopt : heard.tick, now);
+  if (heard.is_copy) playout.repaired(*heard.tick);
+  if (heard.held)
+    for (const auto& arrival : *heard.held) playout.held(arrival.tick, arrival.at, now);
+  Receiver& receiver = *current->exchange.receiver;
+  receiver.replica().keep(playout.delay() * receiver.scene()->tick_rate / 1'000'000 + 1);
+  if (heard.round_trip) playout.measured(*heard.round_trip, now);
+  if (heard.oldest && *heard.oldest < *heard.tick && !heard.is_copy) playout.late(*heard.oldest, now);
+}
+
+/// Packets wait longer than any copy can need.
+bool SessionClient::Impl::is_stuck(std::uint64_t now) const noexcept {
+  const auto since = current->exchange.waits_since();
+  return since && now > *since + std::max(kStuck, 4 * current->exchange.patience());
 }
 
 /// The declaration is here: show its scene from now on, or leave.
@@ -335,6 +360,8 @@ std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::u
       in.buttons_at = now + kButtonsEvery;
       if (in.buttons_number == 0) in.buttons_number = number;
     }
+    if (sign && in.current->playout)
+      writer.add(ReportPart{static_cast<std::uint64_t>(in.current->playout->delay()) / 1000, in.is_stuck(now) ? std::uint8_t{1} : std::uint8_t{0}});
     if (sign) {
       writer.add(StatePart{static_cast<std::uint8_t>(in.state == SessionState::live ? 1 : 0)});
       if (in.state == SessionState::live && in.live_number == 0) in.live_number = number;
@@ -374,7 +401,9 @@ Receiver* SessionClient::receiver() noexcept {
 std::int64_t SessionClient::shown_tick(std::uint64_t now) noexcept {
   impl_->look(now);
   Epoch* const epoch = impl_->shown_epoch();
-  return epoch != nullptr && epoch->playout ? epoch->playout->shown(now) : -1;
+  if (epoch == nullptr || !epoch->playout) return -1;
+  epoch->playout->waits(epoch->exchange.waits_since(), now);
+  return epoch->playout->shown(now);
 }
 
 /// The fastest way up and down, and how much later than the fastest packet the tick is shown. No clock but the own one counts.

@@ -98,8 +98,16 @@ struct PlayoutOptions {
   std::optional<std::uint32_t> fixed{};
 };
 
+/// What the packets of rigid objects to a client build on, and so what a loss costs. spec/70-session.md section 4.4
+enum class LossPolicy : std::uint8_t {
+  by_role,  ///< repair for observers, prompt for participants: a hand in contact feels the delay
+  repair,   ///< on the packet before; what is lost goes again, and the client shows the past by a round trip more: half the bits
+  prompt,   ///< on what was acknowledged; nothing waits for what is lost, and the client bends over it
+};
+
 struct SessionServerOptions {
-  SenderOptions sender{};      ///< for every client; the baseline is always the acknowledged one
+  SenderOptions sender{};      ///< for every client; the baselines are those of `loss`
+  LossPolicy loss = LossPolicy::by_role;
   std::uint16_t clients = 8;   ///< at a time
   std::uint64_t rate = 0;      ///< [bit/s] to each client, headers included; 0: no limit
   std::uint32_t headers = 28;  ///< [bytes] around a datagram: UDP and IPv4; with the seal 29 more

@@ -19,6 +19,15 @@ void LossBursts::heard(std::uint64_t number, std::optional<std::int64_t> tick, s
   if (number + kRemembered <= newest_) return;
   datagrams_[number % kRemembered] = {number, now, tick};
   newest_ = std::max(newest_, number);
+  if (first_ == 0) first_ = number;
+}
+
+std::uint32_t LossBursts::loss(std::uint64_t now) const noexcept {
+  constexpr std::uint64_t kLooked = 256, kLeast = 128;
+  const std::uint64_t end = newest_old(now), begin = std::max(first_, end < kLooked ? 1 : end - kLooked + 1);
+  std::uint64_t missing = 0;
+  for (std::uint64_t number = begin; number <= end; ++number) missing += datagrams_[number % kRemembered].number != number ? 1u : 0u;
+  return static_cast<std::uint32_t>((missing << 16) / std::max(kLeast, end + 1 - std::min(begin, end)));
 }
 
 /// Highest number up to which it is known what is lost.
@@ -66,6 +75,10 @@ constexpr std::uint64_t kAdaptEvery = 100'000;                 // [us]
 constexpr std::int64_t kShrink = 100;                          // [us] in this time: 1 ms per second
 constexpr std::int64_t kLong = 150'000;                        // [us]: what is above goes sooner
 constexpr std::uint64_t kUndecided = 1'000'000;  // [us] in which a change is found to be one of the way or of a clock
+constexpr std::int64_t kAnswer = 10'000, kMargin = 10'000, kApart = 10'000;  // [us] of an acknowledgement; beyond; between copies
+constexpr std::uint32_t kLossy = 65536 / 333, kLossier = 65536 / 20, kLossiest = 65536 * 3 / 20;  // shares x 2^-16
+constexpr std::int64_t kMostJitter = 50'000;  // [us] of round trips: what is above is a standstill or a queue
+constexpr std::uint64_t kOvertaken = 5'000;  // [us] that a packet waits for one that is not lost but late
 constexpr std::uint64_t kSettle = 20'000;        // [us] in which an end that woke up takes what has waited
 
 constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }
@@ -82,8 +95,8 @@ void PlayoutClock::heard(std::uint64_t number, std::optional<std::int64_t> tick,
   if (shown_ < 0) return;
   if (at - heard_at_ >= reach_) follows_ = false;
   heard_at_ = at;
-  if (tick) learn(time_of(*tick), now);
-  else if (follows_ && number > newest_) news_ = std::max(news_, at - lead_);  // as new as its way lets it be
+  if (tick) know(time_of(*tick), at - time_of(*tick)), learn(at - time_of(*tick), now);
+  else if (follows_ && number > newest_ && !waits_) news_ = std::max(news_, at - lead_);  // as new as its way lets it be
   newest_ = std::max(newest_, number);
   if (tick) add(at - time_of(*tick), now);
   if (first || (tick && now >= adapted_at_ + kAdaptEvery && is_settled(now))) adapt(now);
@@ -91,17 +104,61 @@ void PlayoutClock::heard(std::uint64_t number, std::optional<std::int64_t> tick,
 
 void PlayoutClock::told(std::int64_t time, std::uint64_t now) noexcept {
   if (shown_ < 0) return;
-  learn(time, now);
-  base_.add(static_cast<std::int64_t>(now) - time, now);
+  const std::int64_t lead = static_cast<std::int64_t>(now) - time;
+  if (!waits_) know(time, lead);
+  learn(lead, now);
+  base_.add(lead, now);
   if (now >= adapted_at_ + kAdaptEvery && is_settled(now)) adapt(now);
 }
 
-/// The other end has come to this time of its ticks [us].
-void PlayoutClock::learn(std::int64_t time, std::uint64_t now) noexcept {
-  const std::int64_t lead = static_cast<std::int64_t>(now) - time;
+/// Up to this time of the other end's ticks [us] something is known.
+void PlayoutClock::know(std::int64_t time, std::int64_t lead) noexcept {
   if (time > news_ || !follows_) lead_ = lead;
   news_ = std::max(news_, time);
   follows_ = true;
+}
+
+void PlayoutClock::repaired(std::int64_t tick) noexcept {
+  if (shown_ >= 0) know(time_of(tick), lead_);
+}
+
+void PlayoutClock::held(std::int64_t tick, std::uint64_t at, std::uint64_t now) noexcept {
+  if (at < settled_at_) return;
+  const bool first = shown_ < 0;
+  const std::int64_t lead = static_cast<std::int64_t>(at) - time_of(tick);
+  if (first) {
+    shown_ = tick;
+    heard_at_ = static_cast<std::int64_t>(now);
+    know(time_of(tick), lead);
+  }
+  learn(lead, now);
+  add(lead, now);
+  if (first || (now >= adapted_at_ + kAdaptEvery && is_settled(now))) adapt(now);
+}
+
+/// [us] from the sending of what is lost to the arrival of its copy, less one way.
+std::int64_t PlayoutClock::answer() const noexcept {
+  if (!repair_) return 0;
+  const std::int64_t trip = repair_->smoothed + 4 * repair_->variation, most = 2 * repair_->least + kMostJitter;
+  return std::min(trip, most) + kAnswer + kMargin;
+}
+
+void PlayoutClock::waits(std::optional<std::uint64_t> since, std::uint64_t now) noexcept {
+  waits_ = since.has_value();
+  if (!waits_ || options_.fixed) return;
+  if (now > *since + std::max<std::uint64_t>(kOvertaken, static_cast<std::uint64_t>(late_ - least_))) delay_ = std::max(delay_, least_ + answer() + kApart);
+}
+
+/// How far behind to show, so that copies come in time: two or three rounds of them where copies get lost, too.
+std::int64_t PlayoutClock::for_repair(std::uint64_t now) const noexcept {
+  const std::uint32_t loss = bursts_.loss(now);
+  if (loss > kLossiest) return 2 * answer() + 3 * kAnswer;
+  if (loss > kLossier) return answer() * 3 / 2 + kAnswer;
+  return loss > kLossy ? answer() + kApart : 0;
+}
+
+/// For whether a clock stood still.
+void PlayoutClock::learn(std::int64_t lead, std::uint64_t now) noexcept {
   if (now < settled_at_) return;
   if (period_.leads == 0) {
     const std::int64_t base = base_.value().value_or(lead);
@@ -183,9 +240,11 @@ void PlayoutClock::adapt(std::uint64_t now) noexcept {
   late_ = *late_at - base;
   std::int64_t early = 0;  // sum
   for (auto lead = sorted_.begin(); lead != end; ++lead) early += *late_at - *lead;
+  least_ = *std::min_element(sorted_.begin(), late_at + 1) - base;
   const std::int64_t longest = kLongestBurst * tick_rate_ / 1'000'000;
   const std::int64_t slack = std::max(kSlack, time_of(bursts_.bridge(longest, now)));
-  const std::int64_t wanted = late_ + std::max(kLeastSlack, slack - early / static_cast<std::int64_t>(count));
+  const std::int64_t usual = late_ + std::max(kLeastSlack, slack - early / static_cast<std::int64_t>(count));
+  const std::int64_t wanted = repair_ ? std::max(usual, least_ + for_repair(now)) : usual;
   delay_ = std::max(wanted, delay_ - std::max(kShrink, (delay_ - kLong) / 64));
 }
 

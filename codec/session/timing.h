@@ -55,6 +55,8 @@ class LossBursts {
   /// Ticks from the state before to the state after two thirds of the bursts, at most; 0: most losses are single ones.
   /// in   longest  [ticks]; longer ones are outages, which no delay bridges      time O(1024)
   std::int64_t bridge(std::int64_t longest, std::uint64_t now) noexcept;
+  /// Share of the newest 256 numbers that did not come, of 128 if fewer are known, x 2^-16.   time O(1024)
+  std::uint32_t loss(std::uint64_t now) const noexcept;
 
  private:
   static constexpr std::size_t kRemembered = 1024;
@@ -66,7 +68,7 @@ class LossBursts {
 
   std::array<Datagram, kRemembered> datagrams_{};
   std::array<std::int64_t, kRemembered> spans_{};
-  std::uint64_t newest_ = 0;
+  std::uint64_t newest_ = 0, first_ = 0;
 };
 
 // ==== playout clock ====
@@ -82,6 +84,14 @@ class PlayoutClock {
   void heard(std::uint64_t number, std::optional<std::int64_t> tick, std::uint64_t now) noexcept;
   /// With the datagram that was heard the other end told the time of its ticks [us].   time as heard()
   void told(std::int64_t time, std::uint64_t now) noexcept;
+  /// A copy of what was lost came, and up to this tick nothing is missing: that tells nothing about the way.   time O(1)
+  void repaired(std::int64_t tick) noexcept;
+  /// A packet of this tick came at `at` [us] and could not be decoded until now.   time as heard()
+  void held(std::int64_t tick, std::uint64_t at, std::uint64_t now) noexcept;
+  /// What is lost goes again, over a way as measured. Nothing: it does not.
+  void set_repair(const std::optional<RoundTrip>& way) noexcept { repair_ = way; }
+  /// Since when packets wait for one that is missing [us]; nothing: none do. While they do, nothing is news but what is decoded.
+  void waits(std::optional<std::uint64_t> since, std::uint64_t now) noexcept;
   /// A packet of an older tick came as well.   time O(1)
   void late(std::int64_t tick, std::uint64_t now) noexcept;
   /// A round trip was measured [us]: it tells a longer way from a clock that stood still.   time O(1)
@@ -110,7 +120,10 @@ class PlayoutClock {
     std::int64_t base_before = 0;      // until then
     std::optional<std::int64_t> trip_before;
   };
-  void learn(std::int64_t time, std::uint64_t now) noexcept;
+  void learn(std::int64_t lead, std::uint64_t now) noexcept;
+  void know(std::int64_t time, std::int64_t lead) noexcept;
+  std::int64_t answer() const noexcept;
+  std::int64_t for_repair(std::uint64_t now) const noexcept;
   void add(std::int64_t lead, std::uint64_t now) noexcept;
   void adapt(std::uint64_t now) noexcept;
   bool is_settled(std::uint64_t now) noexcept;
@@ -131,13 +144,16 @@ class PlayoutClock {
   std::array<Lead, kRemembered> leads_{};
   std::array<std::int64_t, kRemembered> sorted_{};
   std::size_t next_ = 0, count_ = 0;
-  std::int64_t delay_ = 0, late_ = 0;
+  std::int64_t delay_ = 0, late_ = 0;  // [us] behind `base_`
+  std::int64_t least_ = 0;             // [us] the same of the fastest packet; clock parts may be faster
   std::uint64_t adapted_at_ = 0;                                      // [us]; 0: never
   std::uint64_t settled_at_ = 0;                                      // [us]: what comes before has waited here
   std::uint64_t newest_ = 0;                                          // number heard
   std::int64_t heard_at_ = 0;                                         // [us]
   std::int64_t news_ = std::numeric_limits<std::int64_t>::min() / 4;  // [us] time of the ticks up to which something was heard
   std::int64_t lead_ = 0;                                             // [us] of it
+  std::optional<RoundTrip> repair_;
+  bool waits_ = false;
   bool follows_ = false;                                              // nothing is known to have stood still since
   std::int64_t shown_ = -1;
 };

@@ -26,11 +26,18 @@ struct Motion {
 /// Three bodies that swing by 0.15 m and 34 deg at 0.5 to 1 Hz, without being told their angular velocity: 1 mm and 1 deg.
 Motion swinging_bodies(std::int64_t ticks);
 
+/// Motions of many objects, 1 mm and 1 deg, in session_motions.cpp.   in  seed  of what is drawn
+Motion tumbling_boxes(std::int64_t ticks, std::uint64_t seed);   ///< 12 that are thrown up, tumble, bounce and rest
+Motion knocked_objects(std::int64_t ticks, std::uint64_t seed);  ///< 25 wander, 75 rest but for knocks
+Motion billiard(std::int64_t ticks, std::uint64_t seed);         ///< 16 balls that roll and collide
+Motion juggled_clubs(std::int64_t ticks, std::uint64_t seed);    ///< 9 that fly, spin, are caught and thrown again
+
 struct SessionCase {
   std::string group, name;  ///< "loss", "10 %"
   LinkOptions link{};       ///< the same there and back, but for the seed
   PlayoutOptions playout{};
   std::uint64_t rate = 0;  ///< [bit/s] at most, down; 0: no limit
+  LossPolicy policy = LossPolicy::repair;
 };
 
 struct SessionResult {

@@ -305,45 +305,87 @@ TEST(Bend, WithoutVelocitiesTheWayIsStraight) {
   }
 }
 
-// ==== client timeline ====
+// ==== client timelines ====
 
-Timeline::Update update(std::int64_t tick, std::uint64_t number) {
-  Timeline::Update out{number, {}};
+struct NumberedState {
+  std::uint64_t number = 0;
+  RigidState state;
+};
+
+NumberedState update(std::int64_t tick, std::uint64_t number) {
+  NumberedState out{number, {}};
   out.state.tick = tick;
   return out;
 }
 
-TEST(Timeline, BeginsWithTheInitialState) {
-  Timeline timeline;
-  RigidState initial;
-  initial.position = {1, 2, 3};
-  timeline.reset(initial);
+TEST(Timelines, BeginWithTheInitialStates) {
+  std::vector<RigidObject> objects(2);
+  objects[1].initial.position = {1, 2, 3};
+  Timelines timelines(2);
+  timelines.reset(objects);
   for (const std::int64_t tick : {-5, 0, 1000}) {
-    EXPECT_EQ(timeline.around(tick).before.state, initial);
-    EXPECT_EQ(timeline.around(tick).before.number, 0u);
-    EXPECT_EQ(timeline.around(tick).after, nullptr);
+    const auto [before, after] = timelines.around(1, tick);
+    EXPECT_EQ(timelines[before].state.position, (Vec3i{1, 2, 3}));
+    EXPECT_EQ(timelines[before].number, 0u);
+    EXPECT_EQ(after, Timelines::kNone);
   }
 }
 
-TEST(Timeline, OrderOfArrivalDoesNotMatter) {
-  std::vector<Timeline::Update> updates{update(0, 0)};
+TEST(Timelines, OrderOfArrivalDoesNotMatter) {
+  std::vector<NumberedState> updates{update(0, 0)};
   for (std::uint64_t i = 1; i <= 200; ++i) updates.push_back(update(static_cast<std::int64_t>(i / 3 * 7), i));
   std::mt19937_64 random(1);
   for (int round = 0; round < 20; ++round) {
-    Timeline timeline;
-    timeline.reset({});
-    std::vector<Timeline::Update> shuffled(updates.begin() + 1, updates.end());
+    Timelines timelines(1);
+    timelines.reset(std::vector<RigidObject>(1));
+    std::vector<NumberedState> shuffled(updates.begin() + 1, updates.end());
     std::shuffle(shuffled.begin(), shuffled.end(), random);
-    for (const Timeline::Update& u : shuffled) timeline.add(u);
-    const std::span held = std::span(updates).last(Timeline::kMost);
+    for (const NumberedState& u : shuffled) timelines.add(0, u.number, u.state);
+    ASSERT_EQ(timelines.size(0), updates.size());
     for (std::int64_t tick = -1; tick < 480; ++tick) {
-      const auto after = std::ranges::find_if(held, [&](const auto& u) { return u.state.tick > tick; });
-      const auto [before, next] = timeline.around(tick);
-      EXPECT_EQ(before.number, after == held.begin() ? held.front().number : (after - 1)->number) << tick;
-      const auto following = after == held.begin() ? after + 1 : after;  // before all: the first is shown, at its own tick
-      EXPECT_EQ(next == nullptr ? 0 : next->number, following == held.end() ? 0 : following->number) << tick;
+      const auto after = std::ranges::find_if(updates, [&](const auto& u) { return u.state.tick > tick; });
+      const auto [before, next] = timelines.around(0, tick);
+      EXPECT_EQ(timelines[before].number, after == updates.begin() ? 0 : (after - 1)->number) << tick;
+      const auto following = after == updates.begin() ? after + 1 : after;  // before all: the first is shown, at its own tick
+      EXPECT_EQ(next == Timelines::kNone ? 0 : timelines[next].number, following == updates.end() ? 0 : following->number) << tick;
     }
   }
+}
+
+/// One moves in every tick, 99 are told of once: what is older than the time kept goes, but the last before it.
+TEST(Timelines, KeepATimeOfWhatMovesAndOneStateOfWhatRests) {
+  Timelines timelines(100);
+  timelines.reset(std::vector<RigidObject>(100));
+  timelines.keep(400);
+  std::uint64_t number = 0;
+  for (std::uint32_t i = 1; i < 100; ++i)
+    for (std::int64_t tick = 1; tick <= 3; ++tick) timelines.add(i, ++number, update(tick, 0).state);
+  for (std::int64_t tick = 4; tick <= 2000; ++tick) timelines.add(0, ++number, update(tick, 0).state);
+  EXPECT_EQ(timelines.size(0), 401u);
+  EXPECT_EQ(timelines[timelines.around(0, 1600).before].state.tick, 1600);
+  EXPECT_EQ(timelines[timelines.around(0, 1599).before].state.tick, 1600);  // it is the first now
+  for (std::uint32_t i = 1; i < 100; ++i) {
+    EXPECT_EQ(timelines.size(i), 1u) << i;
+    EXPECT_EQ(timelines[timelines.around(i, 2000).before].state.tick, 3) << i;
+  }
+}
+
+/// More updates than there is room for: all objects forget what is oldest, and each keeps its newest.
+TEST(Timelines, AreBounded) {
+  constexpr std::uint32_t kObjects = 40;  // room for 40 + 5120 updates
+  Timelines timelines(kObjects);
+  timelines.reset(std::vector<RigidObject>(kObjects));
+  std::uint64_t number = 0;
+  for (std::int64_t tick = 1; tick <= 1000; ++tick)
+    for (std::uint32_t i = 0; i < kObjects; ++i) timelines.add(i, ++number, update(tick, 0).state);
+  std::size_t all = 0;
+  for (std::uint32_t i = 0; i < kObjects; ++i) {
+    all += timelines.size(i);
+    EXPECT_GE(timelines.size(i), 60u) << i;
+    EXPECT_EQ(timelines[timelines.around(i, 5000).before].state.tick, 1000) << i;
+    EXPECT_EQ(timelines[timelines.around(i, 950).before].state.tick, 950) << i;
+  }
+  EXPECT_LE(all, 5160u);
 }
 
 TEST(HeardPackets, KnowsTheNewestThousand) {

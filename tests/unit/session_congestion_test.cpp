@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <set>
+#include <span>
+#include <vector>
 
 #include <tactus/session/congestion.h>
 #include <tactus/session/fragments.h>
@@ -296,122 +299,215 @@ TEST(LossBursts, WhateverComesItIsWithinItsLimit) {
 
 // ==== session resends ====
 
-constexpr std::uint64_t kMillisecond = 1000, kWay = 20'000;  // [us]
+constexpr std::uint64_t kMillisecond = 1000;                                                 // [us]
+constexpr Resends::Latest kShapes{.rigid = 400'000, .shape = 120'000, .way = 20'000};  // [us]
 
 struct Sent {
-  explicit Sent(std::size_t size = 40) : bytes(size, 7) {}
+  explicit Sent(std::size_t size = 40, std::size_t of = 2) : bytes(size, 7), substream(of) {}
   Packet packet(std::uint64_t number) const {
-    return {.bytes = bytes, .substream = 2, .sequence = static_cast<std::uint16_t>(number), .number = number};
+    return {.bytes = bytes, .substream = substream, .sequence = static_cast<std::uint16_t>(number), .number = number};
   }
-  void keep(Resends& in, std::uint64_t datagram, std::uint64_t number, std::uint64_t now) const {
-    in.keep(datagram, packet(number), {.bytes = bytes}, now);
+  std::uint16_t keep(Resends& in, std::uint64_t datagram, std::uint64_t number, std::uint64_t now) const {
+    return in.keep(datagram, packet(number), {.bytes = bytes}, now);
   }
   std::vector<std::uint8_t> bytes;
+  std::size_t substream;
 };
 
 TEST(Resends, WhatIsLostGoesAgainOnce) {
   Resends resends(0);
   const Sent sent;
-  for (std::uint64_t n = 1; n <= 5; ++n) sent.keep(resends, n + 100, n, n * kMillisecond);
-  EXPECT_EQ(resends.next(10 * kMillisecond, kWay), nullptr);
+  std::vector<std::uint16_t> places{Resends::kNone};
+  for (std::uint64_t n = 1; n <= 5; ++n) places.push_back(sent.keep(resends, n + 100, n, n * kMillisecond));
+  EXPECT_EQ(resends.next(10 * kMillisecond, kShapes), nullptr);
   EXPECT_FALSE(resends.due());
-  resends.lost(103, 50 * kMillisecond, 1);
-  resends.lost(999, 50 * kMillisecond, 1);
+  resends.lost(places[3], 103, 50 * kMillisecond, 1);
+  resends.lost(places[4], 999, 50 * kMillisecond, 1);  // another datagram had this place before
+  resends.lost(Resends::kNone, 101, 50 * kMillisecond, 1);
   EXPECT_EQ(resends.due(), 50 * kMillisecond);
-  const auto* copy = resends.next(50 * kMillisecond, kWay);
+  const auto* copy = resends.next(50 * kMillisecond, kShapes);
   ASSERT_NE(copy, nullptr);
   EXPECT_EQ(copy->number, 3u);
   EXPECT_EQ(copy->substream, 2u);
   EXPECT_EQ(copy->sequence, 3u);
-  EXPECT_EQ(copy->bytes, sent.bytes);
-  resends.sent(*copy, 50 * kMillisecond);
-  EXPECT_EQ(resends.next(51 * kMillisecond, kWay), nullptr);
+  EXPECT_TRUE(std::ranges::equal(resends.bytes(*copy), sent.bytes));
+  resends.sent(*copy, 106, 50 * kMillisecond);
+  EXPECT_EQ(resends.next(51 * kMillisecond, kShapes), nullptr);
   EXPECT_FALSE(resends.due());
 }
 
 TEST(Resends, TheSecondCopyGoesTenMillisecondsLater) {
   Resends resends(0);
-  const Sent sent;
-  sent.keep(resends, 1, 1, 0);
-  resends.lost(1, 50 * kMillisecond, 2);
-  resends.sent(*resends.next(52 * kMillisecond, kWay), 52 * kMillisecond);
-  EXPECT_EQ(resends.next(62 * kMillisecond - 1, kWay), nullptr);
+  const std::uint16_t place = Sent().keep(resends, 1, 1, 0);
+  resends.lost(place, 1, 50 * kMillisecond, 2);
+  resends.sent(*resends.next(52 * kMillisecond, kShapes), 2, 52 * kMillisecond);
+  EXPECT_EQ(resends.next(62 * kMillisecond - 1, kShapes), nullptr);
   EXPECT_EQ(resends.due(), 62 * kMillisecond);
-  resends.sent(*resends.next(62 * kMillisecond, kWay), 62 * kMillisecond);
-  EXPECT_EQ(resends.next(90 * kMillisecond, kWay), nullptr);
+  resends.sent(*resends.next(62 * kMillisecond, kShapes), 3, 62 * kMillisecond);
+  EXPECT_EQ(resends.next(90 * kMillisecond, kShapes), nullptr);
+}
+
+/// A lost copy goes again; one that arrives ends it, whichever of the datagrams that brought it.
+TEST(Resends, TheDatagramOfTheLastCopyTakesOver) {
+  Resends resends(0);
+  const std::uint16_t place = Sent().keep(resends, 1, 1, 0);
+  resends.lost(place, 1, 20 * kMillisecond, 2);
+  EXPECT_EQ(resends.sent(*resends.next(20 * kMillisecond, kShapes), 2, 20 * kMillisecond), place);
+  resends.sent(*resends.next(30 * kMillisecond, kShapes), 3, 30 * kMillisecond);
+  resends.lost(place, 2, 40 * kMillisecond, 2);  // the other one is still on its way
+  EXPECT_EQ(resends.next(40 * kMillisecond, kShapes), nullptr);
+  resends.lost(place, 3, 50 * kMillisecond, 2);
+  ASSERT_NE(resends.next(50 * kMillisecond, kShapes), nullptr);
+  resends.sent(*resends.next(50 * kMillisecond, kShapes), 4, 50 * kMillisecond);
+  resends.arrived(place, 2);  // late, not lost
+  EXPECT_EQ(resends.next(60 * kMillisecond, kShapes), nullptr);
+  resends.lost(place, 4, 70 * kMillisecond, 2);
+  EXPECT_EQ(resends.next(70 * kMillisecond, kShapes), nullptr);
+  EXPECT_FALSE(resends.due());
 }
 
 TEST(Resends, OldPacketsDoNotGo) {
   Resends resends(0);
-  const Sent sent;
-  sent.keep(resends, 1, 1, 0);
-  resends.lost(1, 50 * kMillisecond, 2);
+  const std::uint16_t place = Sent().keep(resends, 1, 1, 0);
+  resends.lost(place, 1, 50 * kMillisecond, 2);
   Resends late = resends;
-  EXPECT_NE(resends.next(100 * kMillisecond, kWay), nullptr) << "it arrives 120 ms after the first";
-  EXPECT_EQ(late.next(100 * kMillisecond + 1, kWay), nullptr);
+  EXPECT_NE(resends.next(100 * kMillisecond, kShapes), nullptr) << "it arrives 120 ms after the first";
+  EXPECT_EQ(late.next(100 * kMillisecond + 1, kShapes), nullptr);
   EXPECT_FALSE(late.due());
+  EXPECT_FALSE(late.is_broken()) << "no other shape waits for it";
+}
+
+/// One of the rigid objects that comes no more breaks the chain, unless a key packet has made it old.
+TEST(Resends, KnowWhenTheRigidObjectsMustBeginAnew) {
+  Resends resends(0);
+  const Sent rigid(40, 0);
+  const std::uint16_t place = rigid.keep(resends, 1, 1, 0);
+  resends.lost(place, 1, 300 * kMillisecond, 2);
+  Resends late = resends, renewed = resends;
+  EXPECT_NE(resends.next(380 * kMillisecond, kShapes), nullptr);
+  EXPECT_FALSE(resends.is_broken());
+  EXPECT_EQ(late.next(380 * kMillisecond + 1, kShapes), nullptr);
+  EXPECT_TRUE(late.is_broken());
+  EXPECT_FALSE(late.is_broken()) << "it says so once";
+  renewed.settle_rigid(2);
+  EXPECT_EQ(renewed.next(390 * kMillisecond, kShapes), nullptr);
+  EXPECT_FALSE(renewed.is_broken());
+  Resends full(0);  // 64 KiB: what gives way has not arrived
+  for (std::uint64_t n = 1; n <= 65; ++n) Sent(1000, 0).keep(full, n, n, 0);
+  EXPECT_FALSE(full.is_broken());
+  Sent(1000, 0).keep(full, 66, 66, 0);
+  EXPECT_TRUE(full.is_broken());
 }
 
 TEST(Resends, AllPacketsOfADatagramGoTheOldestFirst) {
   Resends resends(0);
   const Sent sent;
-  sent.keep(resends, 9, 12, 0);
-  sent.keep(resends, 9, 11, 0);
-  sent.keep(resends, 8, 10, 0);
-  resends.lost(9, kMillisecond, 1);
+  const std::array places{sent.keep(resends, 9, 12, 0), sent.keep(resends, 9, 11, 0), sent.keep(resends, 8, 10, 0)};
+  for (const std::uint16_t place : places) resends.lost(place, 9, kMillisecond, 1);
   for (const std::uint64_t number : {11u, 12u}) {
-    const auto* copy = resends.next(kMillisecond, kWay);
+    const auto* copy = resends.next(kMillisecond, kShapes);
     ASSERT_NE(copy, nullptr);
     EXPECT_EQ(copy->number, number);
-    resends.sent(*copy, kMillisecond);
+    resends.sent(*copy, 20, kMillisecond);
   }
-  EXPECT_EQ(resends.next(kMillisecond, kWay), nullptr);
+  EXPECT_EQ(resends.next(kMillisecond, kShapes), nullptr);
 }
 
 TEST(Resends, FragmentsGoByThemselves) {
   Resends resends(5 * 1150);
   const Sent sent(2 * 1150 + 7);
+  std::uint16_t last = 0;
   for (std::size_t i = 0; i < 3; ++i)
-    resends.keep(20 + i, sent.packet(4), {i, 3, std::span(sent.bytes).subspan(i * 1150, i < 2 ? 1150 : 7)}, 0);
-  resends.lost(22, kMillisecond, 1);
-  const auto* copy = resends.next(kMillisecond, kWay);
+    last = resends.keep(20 + i, sent.packet(4), {i, 3, std::span(sent.bytes).subspan(i * 1150, i < 2 ? 1150 : 7)}, 0);
+  resends.lost(last, 22, kMillisecond, 1);
+  const auto* copy = resends.next(kMillisecond, kShapes);
   ASSERT_NE(copy, nullptr);
   EXPECT_EQ(copy->number, 4u);
   EXPECT_EQ(copy->index, 2u);
   EXPECT_EQ(copy->count, 3u);
-  EXPECT_EQ(copy->bytes, std::vector<std::uint8_t>(7, 7));
-  resends.sent(*copy, kMillisecond);
-  EXPECT_EQ(resends.next(kMillisecond, kWay), nullptr);
-  const Sent small;
-  for (std::uint64_t n = 0; n < 64; ++n) small.keep(resends, 100 + n, 50 + n, kMillisecond);
-  resends.lost(22, 2 * kMillisecond, 1);
-  EXPECT_NE(resends.next(2 * kMillisecond, kWay), nullptr) << "a packet in fragments costs the others no place";
+  EXPECT_TRUE(std::ranges::equal(resends.bytes(*copy), std::vector<std::uint8_t>(7, 7)));
+  resends.sent(*copy, 23, kMillisecond);
+  EXPECT_EQ(resends.next(kMillisecond, kShapes), nullptr);
 }
 
-/// Against a list of what should go; nothing is allocated.
+/// Nothing is allocated, what gives way never goes, and bytes are those of their packets.
 TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
   Resends resends(0);
   std::mt19937_64 random(1);
-  const Sent large(1150);
+  Sent large(1150);
   const std::uint64_t before = testing::allocated_bytes();
   std::uint64_t number = 0, now = 0, copies = 0;
+  std::array<std::uint16_t, 100> places{};
   for (int i = 0; i < 20'000; ++i) {
     now += random() % 5'000;
     ++number;
-    large.keep(resends, number, number, now);
-    if (random() % 2) resends.lost(number - std::min<std::uint64_t>(number - 1, random() % 100), now, 1 + random() % 2);
-    while (const auto* copy = random() % 4 ? resends.next(now, kWay) : nullptr) {
-      ASSERT_GT(copy->number + 64, number);
-      ASSERT_LE(now + kWay, copy->time + 120'000);
-      resends.sent(*copy, now);
+    std::ranges::fill(large.bytes, static_cast<std::uint8_t>(number));
+    places[number % 100] = large.keep(resends, number, number, now);
+    if (random() % 2) {
+      const std::uint64_t lost = number - std::min<std::uint64_t>(number - 1, random() % 100);
+      resends.lost(places[lost % 100], lost, now, 1 + random() % 2);
+    }
+    while (const auto* copy = random() % 4 ? resends.next(now, kShapes) : nullptr) {
+      ASSERT_GT(copy->number + 57, number) << "56 have room";
+      ASSERT_LE(now + kShapes.way, copy->time + 120'000);
+      ASSERT_TRUE(std::ranges::all_of(resends.bytes(*copy), [&](auto b) { return b == static_cast<std::uint8_t>(copy->number); }));
+      resends.sent(*copy, number, now);
       ++copies;
     }
   }
   EXPECT_GT(copies, 1'000u);
   EXPECT_EQ(testing::allocated_bytes(), before);
   now += 1'000'000;
-  EXPECT_EQ(resends.next(now, kWay), nullptr);
-  EXPECT_FALSE(resends.due()) << "the count of those that wait is right";
+  EXPECT_EQ(resends.next(now, kShapes), nullptr);
+  EXPECT_FALSE(resends.due()) << "none of those that waited is left";
+}
+
+// ==== session held packets ====
+
+TEST(HeldPackets, AreInOrderOfTheirNumbers) {
+  HeldPackets held(100);
+  EXPECT_FALSE(held.waits_since());
+  for (const std::uint64_t number : {7u, 3u, 9u, 3u}) {
+    const std::vector<std::uint8_t> bytes(static_cast<std::size_t>(number), static_cast<std::uint8_t>(number));
+    EXPECT_TRUE(held.hold(number, bytes, 100 - number));
+  }
+  ASSERT_EQ(held.size(), 3u) << "a repeated one is held once";
+  for (std::size_t i = 0; const std::uint64_t number : {3u, 7u, 9u}) {
+    EXPECT_EQ(held[i].number, number);
+    EXPECT_EQ(held.bytes(held[i]).size(), number);
+    EXPECT_EQ(held.bytes(held[i++]).front(), number);
+  }
+  EXPECT_EQ(held.waits_since(), 91u);
+  held.remove_if([](const HeldPackets::Held& one) { return one.number == 9; });
+  EXPECT_EQ(held.waits_since(), 93u);
+  held.remove_if([](const HeldPackets::Held&) { return true; });
+  EXPECT_TRUE(held.empty());
+}
+
+/// Who makes a client hold packets gets no more than 1024 and 64 KiB, and no allocation; gaps are used again.
+TEST(HeldPackets, AreBounded) {
+  HeldPackets small(100), large(100'000), held(1);
+  const std::uint64_t before = testing::allocated_bytes();
+  const std::array<std::uint8_t, 1000> bytes{};
+  for (std::uint64_t n = 1; n <= 1024; ++n) EXPECT_TRUE(small.hold(n, std::span(bytes).first(1), 0)) << n;
+  EXPECT_FALSE(small.hold(1025, std::span(bytes).first(1), 0));
+  for (std::uint64_t n = 1; n <= 100; ++n) EXPECT_TRUE(large.hold(n, bytes, 0)) << n;
+  EXPECT_FALSE(large.hold(101, bytes, 0));
+  std::mt19937_64 random(2);
+  std::array<std::uint8_t, 600> sized{};
+  std::uint64_t kept = 0;
+  for (std::uint64_t n = 1; n <= 20'000; ++n) {
+    const std::size_t size = 1 + random() % sized.size();
+    std::ranges::fill(sized, static_cast<std::uint8_t>(n));
+    const std::size_t all = held.size();
+    if (held.hold(n, std::span(sized).first(size), n)) ++kept;
+    else EXPECT_GT(all * 600 + 600, HeldPackets::kBytes);
+    if (random() % 3 == 0) held.remove_if([&](const HeldPackets::Held& one) { return one.number % 7 == random() % 7; });
+    for (std::size_t i = 0; i < held.size(); i += 17)
+      for (const std::uint8_t byte : held.bytes(held[i])) ASSERT_EQ(byte, static_cast<std::uint8_t>(held[i].number));
+  }
+  EXPECT_GT(kept, 10'000u);
+  EXPECT_EQ(testing::allocated_bytes(), before);
 }
 
 }  // namespace

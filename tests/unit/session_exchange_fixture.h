@@ -35,6 +35,7 @@ inline std::vector<std::size_t> types_of(const Bytes& bytes, Direction direction
 inline constexpr std::size_t kIsClock = 2, kIsFragment = 7, kIsPacket = 8;
 
 struct Meshes {
+  Baseline baseline = Baseline::acknowledged;  // of the packets down
   std::uint32_t squares = 4;
   std::size_t count = 0;
   bool layered = false;
@@ -56,9 +57,11 @@ struct Ends {
     scene = builder.baselines(64).build().value();
     SenderOptions options;
     options.triggers.reduction = Reduction::none;  // a packet of the bodies in every tick
-    options.policy = {.key_interval = 0, .baseline = Baseline::acknowledged};
+    options.policy = {.key_interval = 0, .baseline = meshes.baseline};
     server->send_with(Sender::create(scene, options).value());
-    client->receive_with(Receiver::create(scene).value());
+    client->receive_with(Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}}).value());
+    if (meshes.baseline == Baseline::repaired) server->repair();
+    else client->expect(false);
     samples.resize(objects);
   }
 

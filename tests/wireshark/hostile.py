@@ -23,7 +23,7 @@ from session import CUT, SPARE  # noqa: E402
 UP, DOWN = session.UP, session.DOWN
 SYNTAX = ("R-SES-1", "R-SES-2", "R-SES-3", "R-SES-5", "R-SES-9")
 ORDER = ("malformed", "R-SES-5")
-ONLY = {session.CLOCK: DOWN, session.PIECE: DOWN, session.HASH: UP}
+ONLY = {session.CLOCK: DOWN}
 REASONS = 7
 
 
@@ -31,6 +31,11 @@ REASONS = 7
 def read_part(kind: int, direction: int, e: Cursor) -> None:
     if kind == session.STATE and e.left() == 1:
         require(e.number(1, CUT) < 2 or direction == DOWN, *SPARE)
+        return
+    if kind == session.REPORT and direction == UP or kind == session.BASELINES and direction == DOWN:
+        if kind == session.REPORT:
+            e.varint(CUT, SPARE)
+        require(e.number(1, CUT) < 2 and e.left() == 0, *SPARE)
         return
     if kind == session.CLOCK:
         require(e.varint(CUT, SPARE) < session.END_OF_TIME and e.left() == 0, *SPARE)

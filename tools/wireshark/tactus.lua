@@ -28,7 +28,7 @@ tactus.prefs.port = Pref.uint("UDP port of servers", 7447, "For captures that be
 -- ---- Fields and rules ------------------------------------------------------------------------------------------------
 local forms = { [0] = "handshake", "parts", "packet", "reserved" }
 local kinds = { [0] = "join", "welcome", "refusal", "leave" }
-local part_names = { "acknowledgement", "clock", "buttons or pace", "piece", "state or seat", "hash", "fragment", "packet" }
+local part_names = { "acknowledgement", "clock", "buttons or pace", "piece or report", "state or seat", "hash or baselines", "fragment", "packet" }
 local reasons = { [0] = "bye", "version", "full", "limits", "silence", "scene", "protocol" }
 local statuses = { [0] = "bad", "good", "unverified" }
 local directions = { [0] = "up", "down" }
@@ -87,6 +87,9 @@ field("pace.offset", ProtoField.int64, "Ticks of the server less those of the de
 field("piece.index", u64, "Index", base.DEC)
 field("piece.data", raw, "Bytes of the declaration")
 field("piece.received", u64, "Bytes of the declaration so far", base.DEC)
+field("baselines.policy", u8, "What packets of rigid objects build on", base.DEC, { [0] = "the packet before", "acknowledged packets" })
+field("report.delay", u64, "Playout delay [ms]", base.DEC)
+field("report.key", u8, "Wants a key packet")
 field("state.live", u8, "Live: holds the declaration, wants packets")
 field("hash.substream", u8, "Substream")
 field("hash.number", u16, "Packet number modulo 2^16")
@@ -420,6 +423,12 @@ add_part[BUTTONS] = function(r, tree, d)
 end
 
 add_part[PIECES] = function(r, tree, d)
+  if d.direction == UP then
+    r:add_varint(tree, "report.delay")
+    local key = r:add(tree, "report.key", 1)
+    if key and key:uint() > 1 then r.broken = true end
+    return "report"
+  end
   local index = r:add_varint(tree, "piece.index")
   if not index then return "piece" end
   local data = r:take(r:left())
@@ -459,7 +468,12 @@ add_part[STATE] = function(r, tree, d)
   return live and live:uint() == 1 and "live" or "not live"
 end
 
-add_part[HASH] = function(r, tree)
+add_part[HASH] = function(r, tree, d)
+  if d.direction == DOWN then
+    local policy = r:add(tree, "baselines.policy", 1)
+    if policy and policy:uint() > 1 then r.broken = true end
+    return "baselines"
+  end
   r:add(tree, "hash.substream", 1)
   r:add(tree, "hash.number", 2)
   r:add(tree, "hash.hash", 4)
@@ -489,7 +503,7 @@ add_part[PACKETS] = function(r, tree, d)
   return add_packet(tree, range, d.epoch, d.direction, number, d.fresh)
 end
 
-local only = { [CLOCK] = DOWN, [PIECES] = DOWN, [HASH] = UP }
+local only = { [CLOCK] = DOWN }
 
 local function add_parts(tree, d)
   local r, last, words = reader(d.tvb, 2, d.stop), 0, {}
@@ -505,7 +519,8 @@ local function add_parts(tree, d)
     end
     local kind = type_range:uint()
     local part = tree:add(f.part, d.tvb:range(from, r.at + size - from))
-    local ways = kind == PACE and { "buttons", "pace" } or kind == STATE and { "state", "seat" } or {}
+    local ways = kind == PACE and { "buttons", "pace" } or kind == PIECES and { "report", "piece" } or kind == STATE and { "state", "seat" } or
+      kind == HASH and { "hash", "baselines" } or {}
     part:append_text(": " .. (ways[d.direction == UP and 1 or 2] or types[kind] or "reserved"))
     part:add(f["part.type"], type_range)
     part:add(f["part.size"], size_range, exact)

@@ -59,9 +59,29 @@ Motion read_motion(const std::string& path, const EncoderOptions& options) {
   return out;
 }
 
-/// "trace" with the options of its "encoder", or bodies that swing for so many "ticks".
+/// A motion that is made here, of so many "ticks".
+Motion made_motion(Request& request) {
+  const auto name = request.get<std::string>("made", "swinging");
+  const auto ticks = request.get<std::int64_t>("ticks");
+  if (name == "swinging") return library::swinging_bodies(ticks);
+  const auto seed = request.get<std::uint64_t>("motion_seed", 1);
+  if (name == "boxes") return library::tumbling_boxes(ticks, seed);
+  if (name == "knocks") return library::knocked_objects(ticks, seed);
+  if (name == "billiard") return library::billiard(ticks, seed);
+  if (name == "juggling") return library::juggled_clubs(ticks, seed);
+  refuse_request("\"made\": there is no motion \"" + name + "\"", "Give swinging, boxes, knocks, billiard or juggling.");
+}
+
+library::SessionCase with_policy(library::SessionCase one, Request& request) {
+  const auto policy = request.get<std::string>("policy", "repair");
+  if (policy != "repair" && policy != "prompt") refuse_request("\"policy\" \"" + policy + "\"", "Give repair or prompt.");
+  one.policy = policy == "repair" ? LossPolicy::repair : LossPolicy::prompt;
+  return one;
+}
+
+/// "trace" with the options of its "encoder", or a motion that is made.
 Motion motion_of(Request& request) {
-  if (!request.has("trace")) return library::swinging_bodies(request.get<std::int64_t>("ticks"));
+  if (!request.has("trace")) return made_motion(request);
   const auto path = request.get<std::string>("trace");
   const auto words = request.get<std::vector<std::string>>("encoder", {});
   EncoderOptions options;  // they look at the parser, which has to stay as long as they are used
@@ -111,9 +131,10 @@ Json session_point(Request& request) {
   if (point == "case") {
     const auto index = request.get<std::size_t>("index");
     const Motion motion = motion_of(request);
-    request.check_all_known();
     if (index >= cases.size()) refuse_request("\"index\"", "The point \"motion\" lists the cases.");
-    return json_of(need(library::run_session(motion, cases[index]), motion.name));
+    const library::SessionCase one = with_policy(cases[index], request);
+    request.check_all_known();
+    return json_of(need(library::run_session(motion, one), motion.name));
   }
   if (point != "motion") refuse_request("there is no point \"" + point + "\"", "Give motion or case.");
   const Motion motion = motion_of(request);
