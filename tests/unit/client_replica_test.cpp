@@ -347,7 +347,8 @@ TEST(Timelines, OrderOfArrivalDoesNotMatter) {
       const auto [before, next] = timelines.around(0, tick);
       EXPECT_EQ(timelines[before].number, after == updates.begin() ? 0 : (after - 1)->number) << tick;
       const auto following = after == updates.begin() ? after + 1 : after;  // before all: the first is shown, at its own tick
-      EXPECT_EQ(next == Timelines::kNone ? 0 : timelines[next].number, following == updates.end() ? 0 : following->number) << tick;
+      EXPECT_EQ(next == Timelines::kNone ? 0 : timelines[next].number, following == updates.end() ? 0 : following->number)
+          << tick;
     }
   }
 }
