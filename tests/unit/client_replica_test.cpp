@@ -325,7 +325,7 @@ TEST(Timelines, BeginWithTheInitialStates) {
   timelines.reset(objects);
   for (const std::int64_t tick : {-5, 0, 1000}) {
     const auto [before, after] = timelines.around(1, tick);
-    EXPECT_EQ(timelines[before].state.position, (Vec3i{1, 2, 3}));
+    EXPECT_EQ(timelines[before].state.position, (std::array<std::int32_t, 3>{1, 2, 3}));
     EXPECT_EQ(timelines[before].number, 0u);
     EXPECT_EQ(after, Timelines::kNone);
   }
