@@ -17,7 +17,9 @@ namespace tactus {
 // ==== timelines ====
 
 Timelines::Timelines(std::size_t objects)
-    : updates_(objects == 0 ? 0 : objects + std::clamp<std::size_t>(128 * objects, 4096, 32768)), first_(objects), last_(objects) {}
+    : updates_(objects == 0 ? 0 : objects + std::clamp<std::size_t>(128 * objects, 4096, 32768)),
+      first_(objects),
+      last_(objects) {}
 
 void Timelines::reset(std::span<const RigidObject> objects) noexcept {
   for (std::size_t i = 0; i < first_.size(); ++i) {

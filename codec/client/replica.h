@@ -171,9 +171,9 @@ class Replica {
   Interpolation interpolation_ = Interpolation::none;
   std::uint32_t share_ = 0;  // x 2^-16
   std::int64_t shortest_ = 0, longest_ = 0;
-  std::int64_t reach_ = 0;      // [ticks] longest gap to bend over
-  std::vector<Track> tracks_;   // empty with playout
-  Timelines timelines_;         // of no object without
+  std::int64_t reach_ = 0;     // [ticks] longest gap to bend over
+  std::vector<Track> tracks_;  // empty with playout
+  Timelines timelines_;        // of no object without
   HeardPackets heard_;
   std::vector<DeformableDecoder*> shapes_;
 };

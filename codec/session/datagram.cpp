@@ -16,7 +16,8 @@ constexpr std::uint16_t kJoin = 0, kWelcome = 1, kRefusal = 2, kLeave = 3, kFirs
 // Types of parts.
 constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPace = 3, kPiece = 4, kReport = 4, kState = 5, kSeat = 5,
                        kHash = 6, kBaselines = 6, kFragment = 7,
-                       kFirstUnknown = 9;  // up 3 buttons, 4 report, 5 state, 6 hash; down 3 pace, 4 piece, 5 seat, 6 baselines; 8: packet
+                       kFirstUnknown =
+                           9;  // up 3 buttons, 4 report, 5 state, 6 hash; down 3 pace, 4 piece, 5 seat, 6 baselines; 8: packet
 
 constexpr std::uint32_t kMagic = 0x53544354;  // "TCTS"
 constexpr std::uint8_t kVersion = 1;
@@ -30,9 +31,7 @@ constexpr LeaveReason kLastReason = LeaveReason::protocol;
 bool kind_comes(std::uint16_t kind, Direction direction) noexcept {
   return kind == kLeave || (kind < kFirstUnknownKind && (kind == kJoin) == (direction == Direction::up));
 }
-bool part_comes(std::uint8_t type, Direction direction) noexcept {
-  return type != kClock || direction == Direction::down;
-}
+bool part_comes(std::uint8_t type, Direction direction) noexcept { return type != kClock || direction == Direction::down; }
 
 bool is_pace(const PacePart& pace) noexcept {
   return pace.from < kEndOfTicks && pace.offset >= -kFarthest && pace.offset <= kFarthest;

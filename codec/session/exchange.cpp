@@ -152,8 +152,7 @@ bool Exchange::took(const DecodedPacket& decoded, std::size_t size, Reading& rea
   const bool newest = receiver->tick(decoded.substream) == decoded.tick;
   if (direction_ == Direction::up && decoded.number % kHashEvery == 0 && newest && decoded.layer == Layer::all) {
     const auto hash = static_cast<std::uint32_t>(receiver->state_hash(decoded.substream));
-    reading.heard.hash =
-        HashPart{static_cast<std::uint8_t>(decoded.substream), static_cast<std::uint16_t>(decoded.number), hash};
+    reading.heard.hash = HashPart{static_cast<std::uint8_t>(decoded.substream), static_cast<std::uint16_t>(decoded.number), hash};
   }
   if (decoded.substream != 0) return true;
   newest_rigid_ = std::max(newest_rigid_, decoded.number);
@@ -339,8 +338,7 @@ Resends::Latest Exchange::latest() const noexcept {
 void Exchange::lose(std::uint64_t number, std::uint64_t now) noexcept {
   const Slot& slot = slots_[number % slots_.size()];
   if (!resends_ || slot.number != number) return;
-  for (std::size_t i = 0; i < slot.count; ++i)
-    resends_->lost(slot.kept[i], number, now, 2);
+  for (std::size_t i = 0; i < slot.count; ++i) resends_->lost(slot.kept[i], number, now, 2);
 }
 
 const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {

@@ -47,10 +47,10 @@ class Exchange {
 
   /// What the packets of a datagram brought.
   struct Heard {
-    std::uint64_t number = 0;                ///< of the datagram
-    std::optional<std::int64_t> tick;        ///< newest of the packets that were decoded
-    std::optional<std::int64_t> oldest;      ///< oldest of them
-    bool is_copy = false;                    ///< one of rigid objects was a copy: its tick tells nothing about the way
+    std::uint64_t number = 0;            ///< of the datagram
+    std::optional<std::int64_t> tick;    ///< newest of the packets that were decoded
+    std::optional<std::int64_t> oldest;  ///< oldest of them
+    bool is_copy = false;                ///< one of rigid objects was a copy: its tick tells nothing about the way
     /// Of the packets that were held until now, those with the fastest and the slowest way.
     struct Arrival {
       std::int64_t tick = 0;
@@ -66,7 +66,8 @@ class Exchange {
   template <class Take>
   Result<Heard> handle(std::uint64_t now, const Numbered& datagram, Take&& take) noexcept {
     TACTUS_TRY(const std::uint64_t number, receive(now, datagram));
-    Reading reading{{.number = number, .tick = {}, .oldest = {}, .is_copy = false, .held = {}, .hash = {}, .round_trip = {}}, now};
+    Reading reading{{.number = number, .tick = {}, .oldest = {}, .is_copy = false, .held = {}, .hash = {}, .round_trip = {}},
+                    now};
     PartReader parts = datagram.parts(direction_ == Direction::up ? Direction::down : Direction::up);
     for (;;) {
       TACTUS_TRY(const std::optional<Part> part, parts.next());
@@ -115,9 +116,7 @@ class Exchange {
   void hold_tick() noexcept { ++traffic_.ticks_held; }           ///< instead of submit(): nothing may be sent
   const SentNumbers& sent() const noexcept { return sent_; }
   /// [us] since when the first packet that is held waits; nothing: none is held.
-  std::optional<std::uint64_t> waits_since() const noexcept {
-    return held_ ? held_->waits_since() : std::nullopt;
-  }
+  std::optional<std::uint64_t> waits_since() const noexcept { return held_ ? held_->waits_since() : std::nullopt; }
   /// The client has asked for a key packet of the rigid objects. It gets one, but not more often than one can be answered.
   void want_key(std::uint64_t now) noexcept;
   void set_playout(std::uint64_t delay) noexcept { playout_ = delay; }  ///< [us] of the client, as it has said
@@ -145,7 +144,7 @@ class Exchange {
     std::uint64_t number = 0;
     std::array<PacketName, 8> packets{};
     std::array<std::uint16_t, 8> kept{};  // where to find them for copies
-    FragmentName fragment{};  // of the only packet
+    FragmentName fragment{};              // of the only packet
     std::uint8_t count = 0;
     bool layered = false;
   };

@@ -254,7 +254,9 @@ class HeldPackets {
   std::size_t size() const noexcept { return held_.size(); }
   /// What is held, by number.
   const Held& operator[](std::size_t i) const noexcept { return held_[i]; }
-  std::span<const std::uint8_t> bytes(const Held& held) const noexcept { return std::span(bytes_).subspan(held.begin, held.size); }
+  std::span<const std::uint8_t> bytes(const Held& held) const noexcept {
+    return std::span(bytes_).subspan(held.begin, held.size);
+  }
   /// [us] when the first of them came; nothing: none is held.   time O(held)
   std::optional<std::uint64_t> waits_since() const noexcept;
   /// Forget those for which `done(held)` is true.

@@ -25,8 +25,8 @@ constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
 constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
 constexpr std::uint64_t kUnanswered = 400'000;   // [us] at least, until a client joins again
 constexpr std::uint64_t kAsleep = 100'000;       // [us] without a call: the program, or its machine, stood still
-constexpr std::uint64_t kStuck = 500'000;        // [us] that packets wait for one that is missing before a key packet is asked for
-constexpr unsigned kLeaves = 3;                  // one of them should arrive
+constexpr std::uint64_t kStuck = 500'000;  // [us] that packets wait for one that is missing before a key packet is asked for
+constexpr unsigned kLeaves = 3;            // one of them should arrive
 
 /// An epoch, from its welcome on.
 struct Epoch {
@@ -361,7 +361,8 @@ std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::u
       if (in.buttons_number == 0) in.buttons_number = number;
     }
     if (sign && in.current->playout)
-      writer.add(ReportPart{static_cast<std::uint64_t>(in.current->playout->delay()) / 1000, in.is_stuck(now) ? std::uint8_t{1} : std::uint8_t{0}});
+      writer.add(ReportPart{static_cast<std::uint64_t>(in.current->playout->delay()) / 1000,
+                            in.is_stuck(now) ? std::uint8_t{1} : std::uint8_t{0}});
     if (sign) {
       writer.add(StatePart{static_cast<std::uint8_t>(in.state == SessionState::live ? 1 : 0)});
       if (in.state == SessionState::live && in.live_number == 0) in.live_number = number;

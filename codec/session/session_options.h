@@ -106,7 +106,7 @@ enum class LossPolicy : std::uint8_t {
 };
 
 struct SessionServerOptions {
-  SenderOptions sender{};      ///< for every client; the baselines are those of `loss`
+  SenderOptions sender{};  ///< for every client; the baselines are those of `loss`
   LossPolicy loss = LossPolicy::by_role;
   std::uint16_t clients = 8;   ///< at a time
   std::uint64_t rate = 0;      ///< [bit/s] to each client, headers included; 0: no limit

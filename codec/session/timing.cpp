@@ -26,7 +26,8 @@ std::uint32_t LossBursts::loss(std::uint64_t now) const noexcept {
   constexpr std::uint64_t kLooked = 256, kLeast = 128;
   const std::uint64_t end = newest_old(now), begin = std::max(first_, end < kLooked ? 1 : end - kLooked + 1);
   std::uint64_t missing = 0;
-  for (std::uint64_t number = begin; number <= end; ++number) missing += datagrams_[number % kRemembered].number != number ? 1u : 0u;
+  for (std::uint64_t number = begin; number <= end; ++number)
+    missing += datagrams_[number % kRemembered].number != number ? 1u : 0u;
   return static_cast<std::uint32_t>((missing << 16) / std::max(kLeast, end + 1 - std::min(begin, end)));
 }
 
@@ -77,9 +78,10 @@ constexpr std::int64_t kLong = 150'000;                        // [us]: what is 
 constexpr std::uint64_t kUndecided = 1'000'000;  // [us] in which a change is found to be one of the way or of a clock
 constexpr std::int64_t kAnswer = 10'000, kMargin = 10'000, kApart = 10'000;  // [us] of an acknowledgement; beyond; between copies
 constexpr std::uint32_t kLossy = 65536 / 333, kLossier = 65536 / 20, kLossiest = 65536 * 3 / 20;  // shares x 2^-16
+constexpr std::int64_t kLeastJitter = 20'000;                                                     // [us]
 constexpr std::int64_t kMostJitter = 50'000;  // [us] of round trips: what is above is a standstill or a queue
-constexpr std::uint64_t kOvertaken = 5'000;  // [us] that a packet waits for one that is not lost but late
-constexpr std::uint64_t kSettle = 20'000;        // [us] in which an end that woke up takes what has waited
+constexpr std::uint64_t kOvertaken = 5'000;   // [us] that a packet waits for one that is not lost but late
+constexpr std::uint64_t kSettle = 20'000;     // [us] in which an end that woke up takes what has waited
 
 constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }
 
@@ -139,14 +141,16 @@ void PlayoutClock::held(std::int64_t tick, std::uint64_t at, std::uint64_t now) 
 /// [us] from the sending of what is lost to the arrival of its copy, less one way.
 std::int64_t PlayoutClock::answer() const noexcept {
   if (!repair_) return 0;
-  const std::int64_t trip = repair_->smoothed + 4 * repair_->variation, most = 2 * repair_->least + kMostJitter;
-  return std::min(trip, most) + kAnswer + kMargin;
+  const std::int64_t seen = 2 * (repair_->smoothed - repair_->least) + kLeastJitter;  // the variation begins far too high
+  const std::int64_t trip = repair_->smoothed + std::min(4 * repair_->variation, seen);
+  return std::min(trip, 2 * repair_->least + kMostJitter) + kAnswer + kMargin;
 }
 
 void PlayoutClock::waits(std::optional<std::uint64_t> since, std::uint64_t now) noexcept {
   waits_ = since.has_value();
   if (!waits_ || options_.fixed) return;
-  if (now > *since + std::max<std::uint64_t>(kOvertaken, static_cast<std::uint64_t>(late_ - least_))) delay_ = std::max(delay_, least_ + answer() + kApart);
+  if (now > *since + std::max<std::uint64_t>(kOvertaken, static_cast<std::uint64_t>(late_ - least_)))
+    delay_ = std::max(delay_, least_ + answer() + kApart);
 }
 
 /// How far behind to show, so that copies come in time: two or three rounds of them where copies get lost, too.

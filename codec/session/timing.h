@@ -146,15 +146,15 @@ class PlayoutClock {
   std::size_t next_ = 0, count_ = 0;
   std::int64_t delay_ = 0, late_ = 0;  // [us] behind `base_`
   std::int64_t least_ = 0;             // [us] the same of the fastest packet; clock parts may be faster
-  std::uint64_t adapted_at_ = 0;                                      // [us]; 0: never
-  std::uint64_t settled_at_ = 0;                                      // [us]: what comes before has waited here
-  std::uint64_t newest_ = 0;                                          // number heard
-  std::int64_t heard_at_ = 0;                                         // [us]
+  std::uint64_t adapted_at_ = 0;       // [us]; 0: never
+  std::uint64_t settled_at_ = 0;       // [us]: what comes before has waited here
+  std::uint64_t newest_ = 0;           // number heard
+  std::int64_t heard_at_ = 0;          // [us]
   std::int64_t news_ = std::numeric_limits<std::int64_t>::min() / 4;  // [us] time of the ticks up to which something was heard
   std::int64_t lead_ = 0;                                             // [us] of it
   std::optional<RoundTrip> repair_;
   bool waits_ = false;
-  bool follows_ = false;                                              // nothing is known to have stood still since
+  bool follows_ = false;  // nothing is known to have stood still since
   std::int64_t shown_ = -1;
 };
 

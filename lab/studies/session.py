@@ -8,6 +8,7 @@ from studies import report
 from studies.report import per
 
 TICKS, FEW_TICKS = 120_000, 10_000  # of the bodies that swing
+MADE = ("boxes", "knocks", "billiard", "juggling")  # motions of many objects
 COLUMNS = ["over a bound", "longest [ms]", "mean [ms]", "shown behind [ms]", "payload [kbit/s]", "x chain", "session", "UDP/IPv4",
            "all down", "all up"]
 HEAD = ["motion", "group", "case", "ticks", "over", "over_position", "over_rotation", "over_force", "over_shape", "longest_s",
@@ -35,6 +36,9 @@ def parser(what):
     made = arguments.parser("bench session", what, "Example:\n  tactus bench session truth.mcap -p 4% --visual 0.3mm,2deg -o "
                                                    "session")
     made.add_argument("traces", metavar="TRACE", nargs="*", help="Also study these recordings, at the bounds given by options")
+    made.add_argument("--made", choices=MADE, action="append", default=[], metavar="NAME",
+                      help="Also study 10 s of a motion of many objects: boxes (12 that tumble), knocks (100 objects), billiard "
+                           "(16 balls), juggling (9 clubs); may be repeated")
     made.add_argument("--short", action="store_true", help="Run two cases over 10 s")
     made.add_argument("--seed", default=1, type=arguments.whole(0, 2**64 - 1), metavar="N", help="Seed of the networks [1]")
     arguments.add_report_options(made, output_help="Folder for report.md, CSV and figure", force=True)
@@ -68,6 +72,7 @@ def run(options):
     """The motions, each with the results of its cases."""
     common = {"short": options.short, "seed": options.seed}
     asked = [common | {"ticks": FEW_TICKS if options.short else TICKS}]
+    asked += [common | {"ticks": FEW_TICKS, "made": name} for name in options.made]
     asked += [common | {"trace": trace, "encoder": options.encoder} for trace in options.traces]
     motions = program.side_by_side(lambda one: program.point("session", point="motion", **one), asked, options.jobs)
     points = [(motion, request, case["index"]) for motion, request in zip(motions, asked) for case in motion["cases"]]

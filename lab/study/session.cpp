@@ -203,9 +203,13 @@ Result<double> chain_payload(const Motion& motion) {
 
 Result<SessionResult> run_session(const Motion& motion, const SessionCase& one) {
   TACTUS_TRY(const SharedScene scene, scene_of(motion, 64));
-  NetworkOptions options{
-      .uplink = one.link, .downlink = one.link, .device = {}, .playout = one.playout, .role = Role::observer, .rate = one.rate,
-      .loss = one.policy};
+  NetworkOptions options{.uplink = one.link,
+                         .downlink = one.link,
+                         .device = {},
+                         .playout = one.playout,
+                         .role = Role::observer,
+                         .rate = one.rate,
+                         .loss = one.policy};
   TACTUS_TRY(const auto network, SessionNetwork::create(scene, 1, motion.sender, options));
   SessionResult result{.of = one};
   Judge judge(motion, result);

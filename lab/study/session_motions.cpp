@@ -38,9 +38,8 @@ void turn(Body& body) {
 
 /// 1 mm and 1 deg.
 Motion motion_of(std::string name, std::size_t objects) {
-  Motion out{.name = std::move(name),
-             .info = {.tick_rate = 1000, .objects = {}, .users = {}, .source = {}, .scene = {}},
-             .frames = {}};
+  Motion out{
+      .name = std::move(name), .info = {.tick_rate = 1000, .objects = {}, .users = {}, .source = {}, .scene = {}}, .frames = {}};
   out.sender.triggers.visual_position = 1e-3;
   out.sender.triggers.visual_rotation = std::numbers::pi / 180;
   out.sender.triggers.haptic = HapticRule::off;

@@ -38,8 +38,10 @@ Result<std::unique_ptr<SessionNetwork>> SessionNetwork::create(SharedScene scene
   network->tick_rate_ = scene->tick_rate;
   network->observer_ = options.observer;
   Random seeds(options.downlink.seed);
-  const SessionServerOptions of_server{
-      .sender = sender, .loss = options.loss, .clients = static_cast<std::uint16_t>(std::max<std::size_t>(1, users)), .rate = options.rate};
+  const SessionServerOptions of_server{.sender = sender,
+                                       .loss = options.loss,
+                                       .clients = static_cast<std::uint16_t>(std::max<std::size_t>(1, users)),
+                                       .rate = options.rate};
   TACTUS_TRY(auto server, SessionServer::create(std::move(scene), of_server, seeds.next(), network->now_));
   network->server_ = std::make_unique<SessionServer>(std::move(server));
   for (std::size_t i = 0; i < users; ++i) {

@@ -30,8 +30,8 @@ struct NetworkOptions {
   LinkOptions uplink, downlink;  ///< of user 0; those of others differ by their seeds
   DeviceCoding device{};
   PlayoutOptions playout{};
-  Role role = Role::participant;  ///< of every client
-  std::uint64_t rate = 0;         ///< [bit/s] at most, to each client; 0: no limit
+  Role role = Role::participant;          ///< of every client
+  std::uint64_t rate = 0;                 ///< [bit/s] at most, to each client; 0: no limit
   LossPolicy loss = LossPolicy::by_role;  ///< of the server
   /// Sees each datagram at both ends, from the first join on. It may not throw.
   std::function<void(const Sighting&)> observer{};

@@ -325,7 +325,7 @@ TEST(Timelines, BeginWithTheInitialStates) {
   timelines.reset(objects);
   for (const std::int64_t tick : {-5, 0, 1000}) {
     const auto [before, after] = timelines.around(1, tick);
-    EXPECT_EQ(timelines[before].state.position, (Vec3i{1, 2, 3}));
+    EXPECT_EQ(timelines[before].state.position, (std::array<std::int32_t, 3>{1, 2, 3}));
     EXPECT_EQ(timelines[before].number, 0u);
     EXPECT_EQ(after, Timelines::kNone);
   }
@@ -347,7 +347,8 @@ TEST(Timelines, OrderOfArrivalDoesNotMatter) {
       const auto [before, next] = timelines.around(0, tick);
       EXPECT_EQ(timelines[before].number, after == updates.begin() ? 0 : (after - 1)->number) << tick;
       const auto following = after == updates.begin() ? after + 1 : after;  // before all: the first is shown, at its own tick
-      EXPECT_EQ(next == Timelines::kNone ? 0 : timelines[next].number, following == updates.end() ? 0 : following->number) << tick;
+      EXPECT_EQ(next == Timelines::kNone ? 0 : timelines[next].number, following == updates.end() ? 0 : following->number)
+          << tick;
     }
   }
 }

@@ -299,7 +299,7 @@ TEST(LossBursts, WhateverComesItIsWithinItsLimit) {
 
 // ==== session resends ====
 
-constexpr std::uint64_t kMillisecond = 1000;                                                 // [us]
+constexpr std::uint64_t kMillisecond = 1000;                                           // [us]
 constexpr Resends::Latest kShapes{.rigid = 400'000, .shape = 120'000, .way = 20'000};  // [us]
 
 struct Sent {
@@ -450,7 +450,8 @@ TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
     while (const auto* copy = random() % 4 ? resends.next(now, kShapes) : nullptr) {
       ASSERT_GT(copy->number + 57, number) << "56 have room";
       ASSERT_LE(now + kShapes.way, copy->time + 120'000);
-      ASSERT_TRUE(std::ranges::all_of(resends.bytes(*copy), [&](auto b) { return b == static_cast<std::uint8_t>(copy->number); }));
+      ASSERT_TRUE(
+          std::ranges::all_of(resends.bytes(*copy), [&](auto b) { return b == static_cast<std::uint8_t>(copy->number); }));
       resends.sent(*copy, number, now);
       ++copies;
     }

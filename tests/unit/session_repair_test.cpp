@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Packets of rigid objects that build on the one before: what is lost goes again, and what waits for it is held.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include <tactus/session/exchange.h>
+#include "tests/unit/session_exchange_fixture.h"
+
+namespace tactus {
+namespace {
+
+using testing::Bytes;
+using testing::Ends;
+using testing::kIsPacket;
+using testing::kMillisecond;
+using testing::types_of;
+
+/// A round trip of 20 ms is known.
+struct RepairedEnds : Ends {
+  RepairedEnds() : Ends({.baseline = Baseline::repaired}) {
+    for (int i = 0; i < 20; ++i) step();
+  }
+  void step() {
+    submit();
+    give(drain(*server));
+    answer();
+  }
+  /// The datagrams of a tick, which the network loses.
+  std::vector<Bytes> lose() {
+    submit();
+    now += 10 * kMillisecond;
+    return drain(*server);
+  }
+};
+
+TEST(RepairedExchange, PacketsBuildOnTheOneBeforeAndWaitForIt) {
+  RepairedEnds ends;
+  const std::uint64_t state = ends.client->receiver->state_hash(0), heard = ends.client->traffic().packets_heard;
+  ASSERT_EQ(ends.lose().size(), 1u);
+  ends.submit();
+  ends.give(ends.drain(*ends.server));
+  EXPECT_EQ(ends.client->receiver->state_hash(0), state) << "it waits";
+  EXPECT_EQ(ends.client->waits_since(), ends.now);
+  EXPECT_EQ(ends.client->traffic().packets_refused, 0u);
+  ends.answer();
+  EXPECT_EQ(ends.server->sent().highest_acknowledged(), ends.server->sent().newest()) << "what waits has arrived";
+  for (int i = 0; i < 6 && ends.client->waits_since(); ++i) ends.step();
+  EXPECT_FALSE(ends.client->waits_since());
+  EXPECT_GE(ends.client->traffic().packets_heard, heard + 3);
+  EXPECT_EQ(ends.server->traffic().lost, 1u);
+  ends.expect_same();
+}
+
+/// The copies are the packet itself: what they bring is heard again, and counts as decoded.
+TEST(RepairedExchange, SecondCopiesChangeNothing) {
+  RepairedEnds ends;
+  ends.lose();
+  for (int i = 0; i < 20; ++i) {
+    ends.step();
+    if (!ends.client->waits_since()) ends.expect_same();
+  }
+  EXPECT_EQ(ends.client->traffic().packets_refused, 0u);
+  EXPECT_EQ(ends.server->traffic().lost, 1u) << "datagrams with copies are acknowledged";
+  ends.expect_same();
+}
+
+/// Nothing after the last packet tells that it is lost.
+TEST(RepairedExchange, TheLastPacketBeforeAPauseGoesAgain) {
+  RepairedEnds ends;
+  ends.lose();
+  const auto due = ends.server->due();
+  ASSERT_TRUE(due);
+  EXPECT_EQ(*due, ends.server->asked_at() + ends.server->patience());
+  ends.now = *due - 1;
+  EXPECT_TRUE(ends.drain(*ends.server).empty());
+  ends.now = *due;
+  const auto copies = ends.drain(*ends.server);
+  ASSERT_EQ(copies.size(), 1u);
+  EXPECT_EQ(types_of(copies[0]), std::vector<std::size_t>{kIsPacket});
+  ends.give(copies);
+  ends.expect_same();
+}
+
+/// Without a way for a second the objects begin anew: one key packet, not all that was lost.
+TEST(RepairedExchange, AfterAnOutageAKeyPacketIsEnough) {
+  RepairedEnds ends;
+  for (int i = 0; i < 100; ++i) ends.lose();
+  const std::uint64_t heard = ends.client->traffic().packets_heard;
+  for (int i = 0; i < 20; ++i) ends.step();
+  ends.expect_same();
+  EXPECT_FALSE(ends.client->waits_since());
+  EXPECT_LT(ends.client->traffic().packets_heard, heard + 60);
+  EXPECT_EQ(ends.client->traffic().packets_refused, 0u);
+}
+
+TEST(RepairedExchange, AClientThatAsksGetsAKeyPacketOnceInTheTimeOfAnAnswer) {
+  RepairedEnds ends;
+  const auto is_key = [&] {
+    const auto packets = ends.submit();
+    const bool out = packets[0].key;
+    ends.give(ends.drain(*ends.server));
+    return out;
+  };
+  EXPECT_FALSE(is_key());
+  ends.server->want_key(ends.now);
+  EXPECT_TRUE(is_key());
+  ends.server->want_key(ends.now);
+  EXPECT_FALSE(is_key()) << "the answer to the first is on its way";
+  ends.now += ends.server->patience();
+  ends.server->want_key(ends.now);
+  EXPECT_TRUE(is_key());
+  ends.expect_same();
+}
+
+/// Any loss, doubling and disorder, bursts too: what the client decodes is what the server has, in order.
+TEST(RepairedExchange, LossAndDisorderAreRepaired) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    RepairedEnds ends;
+    std::mt19937_64 random(seed);
+    std::vector<std::pair<std::uint64_t, Bytes>> on_the_way;
+    std::uint64_t decoded = 0;
+    for (int i = 0; i < 3000; ++i) {
+      ends.submit();
+      for (Bytes& bytes : ends.drain(*ends.server)) {
+        if (random() % 10 < 3) continue;
+        if (random() % 10 == 0) on_the_way.emplace_back(ends.now + random() % 50'000, bytes);
+        on_the_way.emplace_back(ends.now + random() % 15'000, std::move(bytes));
+      }
+      ends.now += 10 * kMillisecond;
+      for (std::size_t k = 0; k < on_the_way.size();) {
+        if (on_the_way[k].first > ends.now) {
+          ++k;
+          continue;
+        }
+        const auto heard = ends.hear(*ends.client, on_the_way[k].second);
+        if (heard && heard->tick) ++decoded;
+        on_the_way.erase(on_the_way.begin() + static_cast<std::ptrdiff_t>(k));
+      }
+      for (const Bytes& bytes : ends.drain(*ends.client)) {
+        if (random() % 10 >= 3) {
+          EXPECT_TRUE(ends.hear(*ends.server, bytes));
+        }
+      }
+    }
+    for (int i = 0; i < 30; ++i) ends.step();
+    EXPECT_GT(decoded, 500u);
+    EXPECT_EQ(ends.client->traffic().packets_refused, 0u) << "seed " << seed;
+    ends.expect_same();
+  }
+}
+
+}  // namespace
+}  // namespace tactus
