@@ -219,7 +219,7 @@ bool PlayoutClock::is_settled(std::uint64_t now) noexcept {
 }
 
 void PlayoutClock::begin_anew(std::uint64_t now) noexcept {
-  base_ = WindowedMinimum(kWindow);
+  base_ = WindowedMinimum(kDelayWindow);
   base_.add(period_.least, now);
   base_then_.reset();
   count_ = next_ = 0;

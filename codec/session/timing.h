@@ -18,6 +18,7 @@ namespace tactus {
 
 // ==== clock offset ====
 
+inline constexpr std::uint64_t kDelayWindow = 10'000'000;  ///< [us] in which the least delay of a way is looked for
 /// [us] What no way gets shorter or longer by from one datagram to the next unless a clock was stopped: a machine slept, a program stood.
 inline constexpr std::int64_t kClockStep = 30'000;
 
@@ -30,7 +31,7 @@ class ClockOffset {
     const auto back = static_cast<std::int64_t>(now) - static_cast<std::int64_t>(time), there = round_trip - back;
     const auto faster = [](const WindowedMinimum& way, std::int64_t sample) { return sample < *way.value() - kClockStep; };
     const bool as_before = there_.value() && round_trip <= *there_.value() + *back_.value() + kClockStep / 3;
-    if (as_before && (faster(there_, there) || faster(back_, back))) back_ = there_ = WindowedMinimum(kWindow);
+    if (as_before && (faster(there_, there) || faster(back_, back))) back_ = there_ = WindowedMinimum(kDelayWindow);
     back_.add(back, now);
     there_.add(there, now);
   }
@@ -41,8 +42,7 @@ class ClockOffset {
   }
 
  private:
-  static constexpr std::uint64_t kWindow = 10'000'000;
-  WindowedMinimum there_{kWindow}, back_{kWindow};  // both contain the offset
+  WindowedMinimum there_{kDelayWindow}, back_{kDelayWindow};  // both contain the offset
 };
 
 // ==== loss bursts ====
@@ -110,7 +110,6 @@ class PlayoutClock {
  private:
   static constexpr std::size_t kRemembered = 2048;      // leads
   static constexpr std::uint64_t kRecent = 60'000'000;  // [us]: clocks drift
-  static constexpr std::uint64_t kWindow = 10'000'000;  // [us]
   /// What 100 ms brought, or more until they tell enough: whether the other end's ticks, or our own clock, stood still.
   struct Period {
     std::uint64_t since = 0;  // [us]
@@ -132,8 +131,8 @@ class PlayoutClock {
 
   std::uint32_t tick_rate_;
   PlayoutOptions options_;
-  std::int64_t reach_;                              // [us]
-  WindowedMinimum base_{kWindow}, trips_{kWindow};  // of the leads, of the round trips
+  std::int64_t reach_;                                        // [us]
+  WindowedMinimum base_{kDelayWindow}, trips_{kDelayWindow};  // of the leads, of the round trips
   Period period_;
   std::optional<std::int64_t> base_then_, trip_then_;  // at the begin of the last period
   LossBursts bursts_;
