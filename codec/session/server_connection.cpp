@@ -69,6 +69,7 @@ void ServerConnection::begin_epoch(const ServedScene& served, std::uint64_t epoc
   pace_.reset();
   next_tick_ = 0;
   buttons_ = {};
+  playout_ = 0;
   seat(seat_);
   seat_waits_ = seat_ != 0;
 }
@@ -151,8 +152,17 @@ Result<void> ServerConnection::handle(const Part& part, std::uint64_t now) noexc
 
 void ServerConnection::take(const ReportPart& said, std::uint64_t now) noexcept {
   constexpr std::uint64_t kLongest = 2'000;  // [ms]: no copy comes later
-  exchange_->set_playout(1000 * std::min(said.delay, kLongest));
+  playout_ = 1000 * std::min(said.delay, kLongest);
+  exchange_->set_playout(playout_);
   if (said.key != 0) exchange_->want_key(now);
+}
+
+/// Before it is live a client knows only a delay that its user has fixed: it must be long enough for a copy.
+bool ServerConnection::repairs() const noexcept {
+  constexpr std::int64_t kCopies = 60'000;  // [us]
+  if (loss_ != LossPolicy::by_role) return loss_ == LossPolicy::repair;
+  const std::int64_t trip = exchange_->sent().round_trip() ? exchange_->sent().round_trip()->least : 0;
+  return join_.role == Role::observer && (playout_ == 0 || static_cast<std::int64_t>(playout_) >= 2 * trip + kCopies);
 }
 
 /// The client holds the declaration: from the next tick on it gets packets, and may send those of its device.
@@ -160,12 +170,13 @@ Result<void> ServerConnection::go_live(std::uint64_t now) noexcept try {
   const auto next = next_state(server_transitions(), state_, SessionEvent::completed);
   if (!next) return {};
   SenderOptions options = served_.sender;
-  if (repairs()) options.policy.baseline = Baseline::repaired;
+  const bool repaired = repairs();
+  if (repaired) options.policy.baseline = Baseline::repaired;
   TACTUS_TRY(auto sender, Sender::create(served_.scene, options));
   exchange_->send_with(std::move(sender));
-  tells_baselines_ = !repairs();
+  tells_baselines_ = !repaired;
   baselines_number_ = 0;
-  if (!tells_baselines_) exchange_->repair();
+  if (repaired) exchange_->repair();
   congestion_.begin(now);
   if (join_.role == Role::participant) {
     TACTUS_TRY(exchange_->receiver, Receiver::create(served_.device));

@@ -98,9 +98,7 @@ class ServerConnection {
   void add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
   void add_seat(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
 
-  bool repairs() const noexcept {
-    return loss_ == LossPolicy::repair || (loss_ == LossPolicy::by_role && join_.role == Role::observer);
-  }
+  bool repairs() const noexcept;
 
   std::uint16_t client_;
   LossPolicy loss_;
@@ -132,6 +130,7 @@ class ServerConnection {
   std::int64_t next_tick_ = 0;      // of submit()
   std::uint64_t pace_at_ = 0;       // [us] when its changes go again
   ButtonsPart buttons_;
+  std::uint64_t playout_ = 0;           // [us] that the client reported last
   bool tells_baselines_ = false;        // the client does not know yet that they are the acknowledged ones
   std::uint64_t baselines_number_ = 0;  // of the first datagram that said so
   std::uint8_t seat_ = 0;

@@ -360,9 +360,12 @@ std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::u
       in.buttons_at = now + kButtonsEvery;
       if (in.buttons_number == 0) in.buttons_number = number;
     }
-    if (sign && in.current->playout)
-      writer.add(ReportPart{static_cast<std::uint64_t>(in.current->playout->delay()) / 1000,
+    if (sign && in.current->playout) {
+      const auto& fixed = in.options.playout.fixed;
+      const auto delay = static_cast<std::uint64_t>(in.current->playout->delay()) / 1000;
+      writer.add(ReportPart{fixed ? std::max<std::uint64_t>(1, *fixed / 1000) : delay,
                             in.is_stuck(now) ? std::uint8_t{1} : std::uint8_t{0}});
+    }
     if (sign) {
       writer.add(StatePart{static_cast<std::uint8_t>(in.state == SessionState::live ? 1 : 0)});
       if (in.state == SessionState::live && in.live_number == 0) in.live_number = number;

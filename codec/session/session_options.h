@@ -100,9 +100,9 @@ struct PlayoutOptions {
 
 /// What the packets of rigid objects to a client build on, and so what a loss costs. spec/70-session.md section 4.4
 enum class LossPolicy : std::uint8_t {
-  by_role,  ///< repair for observers, prompt for participants: a hand in contact feels the delay
-  repair,   ///< on the packet before; what is lost goes again, and the client shows the past by a round trip more: half the bits
-  prompt,   ///< on what was acknowledged; nothing waits for what is lost, and the client bends over it
+  by_role,  ///< repair for observers, unless they fix a playout delay too short for it; prompt for participants: a hand feels the delay
+  repair,  ///< on the packet before; what is lost goes again, and the client shows the past by a round trip more: half the bits
+  prompt,  ///< on what was acknowledged; nothing waits for what is lost, and the client bends over it
 };
 
 struct SessionServerOptions {

@@ -24,7 +24,8 @@ constexpr std::uint64_t kEpoch = 0x1234567890, kPeer = 9, kNow = 5'000'000;
 
 /// A connection, and datagrams for it written by hand.
 struct Desk {
-  explicit Desk(SessionServerOptions options = {}, std::uint32_t squares = 0) : connection(3, options) {
+  explicit Desk(SessionServerOptions options = {}, std::uint32_t squares = 0, Role role = Role::participant)
+      : connection(3, options) {
     SceneBuilder builder(100);
     builder.rigid("body");
     if (squares > 0) builder.deformable("sheet", testing::sheet(squares, squares));
@@ -35,7 +36,7 @@ struct Desk {
     for (const std::uint8_t b : *served.declaration) hash.add_byte(b);
     served.hash = hash.value();
     served.sender.policy = {.key_interval = 0, .baseline = Baseline::acknowledged};
-    connection.open(kPeer, {.role = Role::participant, .nonce = 5}, served, kEpoch, now);
+    connection.open(kPeer, {.role = role, .nonce = 5}, served, kEpoch, now);
   }
   Result<void> hear(std::initializer_list<Part> parts, std::uint64_t epoch = kEpoch) {
     DatagramWriter writer(Direction::up);
@@ -93,6 +94,33 @@ TEST(ServerConnection, WhoeverKnowsTheEpochGetsThePieces) {
   desk.now += 500;
   EXPECT_EQ(desk.drain().size(), 1u);
   EXPECT_EQ(desk.connection.next_timeout(), desk.now + 500);
+}
+
+/// By role; and an observer that has fixed a delay too short for copies is told that nothing waits for them.
+TEST(ServerConnection, ChoosesWhatPacketsBuildOn) {
+  struct Case {
+    LossPolicy policy;
+    Role role;
+    std::uint64_t delay;  // [ms] of the first report
+    bool acknowledged;
+  };
+  for (const Case& of :
+       {Case{LossPolicy::by_role, Role::observer, 0, false}, Case{LossPolicy::by_role, Role::observer, 59, true},
+        Case{LossPolicy::by_role, Role::observer, 60, false}, Case{LossPolicy::by_role, Role::participant, 0, true},
+        Case{LossPolicy::prompt, Role::observer, 0, true}, Case{LossPolicy::repair, Role::participant, 1, false}}) {
+    Desk desk({.loss = of.policy}, 0, of.role);
+    ASSERT_TRUE(desk.hear({ReportPart{of.delay, 0}, StatePart{1}}));
+    ASSERT_EQ(desk.connection.state(), SessionState::live);
+    bool told = false;
+    desk.now += 100'000;  // an acknowledgement is due
+    for (const Bytes& bytes : desk.drain()) {
+      const Datagram said = read_datagram(bytes, Direction::down).value();
+      PartReader parts = std::get<Numbered>(said).parts(Direction::down);
+      for (auto part = parts.next(); part && *part; part = parts.next())
+        told = told || std::holds_alternative<BaselinesPart>(**part);
+    }
+    EXPECT_EQ(told, of.acknowledged) << static_cast<int>(of.policy) << " " << static_cast<int>(of.role) << " " << of.delay;
+  }
 }
 
 TEST(ServerConnection, IsLiveOnceTheClientSaysSo) {
