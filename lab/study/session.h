@@ -37,7 +37,7 @@ struct SessionCase {
   LinkOptions link{};       ///< the same there and back, but for the seed
   PlayoutOptions playout{};
   std::uint64_t rate = 0;  ///< [bit/s] at most, down; 0: no limit
-  LossPolicy policy = LossPolicy::repair;
+  LossPolicy policy = LossPolicy::by_role;
 };
 
 struct SessionResult {

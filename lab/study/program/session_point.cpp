@@ -73,9 +73,10 @@ Motion made_motion(Request& request) {
 }
 
 library::SessionCase with_policy(library::SessionCase one, Request& request) {
-  const auto policy = request.get<std::string>("policy", "repair");
-  if (policy != "repair" && policy != "prompt") refuse_request("\"policy\" \"" + policy + "\"", "Give repair or prompt.");
-  one.policy = policy == "repair" ? LossPolicy::repair : LossPolicy::prompt;
+  const auto policy = request.get<std::string>("policy", "by role");
+  if (policy != "by role" && policy != "repair" && policy != "prompt")
+    refuse_request("\"policy\" \"" + policy + "\"", "Give by role, repair or prompt.");
+  if (policy != "by role") one.policy = policy == "repair" ? LossPolicy::repair : LossPolicy::prompt;
   return one;
 }
 
