@@ -33,7 +33,7 @@ fs::path folder() {
 
 std::string file_name(const std::string& server, const std::string& user) {
   std::string out = "session-";
-  for (const char c : server + (user.empty() ? "" : "-" + user)) {
+  for (const char c : fmt::format("{}{}{}", server, user.empty() ? "" : "-", user)) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-';
     out += plain ? std::string(1, c) : fmt::format("_{:02x}", static_cast<unsigned char>(c));
   }

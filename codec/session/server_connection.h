@@ -102,9 +102,20 @@ class ServerConnection {
 
   std::uint16_t client_;
   LossPolicy loss_;
+  SessionState state_ = SessionState::closed;
+  LeaveReason leaving_ = LeaveReason::bye;
+  unsigned leaves_ = 0;  // that are still to be sent
+  unsigned faults_ = 0;
+  std::uint8_t seat_ = 0;
+  bool held_ = false;      // the last tick was not sent
+  bool proven_ = false;    // it knows the epoch: the address is its own
+  bool outdated_ = false;  // there is a newer scene
+  bool repeats_welcome_ = false;
+  bool tells_baselines_ = false;                  // the client does not know yet that they are the acknowledged ones
+  bool seat_waits_ = false;                       // for an acknowledgement
+  std::optional<LeaveReason> left_;               // said by the client
   std::uint64_t silence_, headers_, piece_time_;  // [us], [bytes] around a datagram, [us] of a piece at the rate
   double most_widening_;
-  SessionState state_ = SessionState::closed;
   std::uint64_t peer_ = 0, token_ = 0;
   Join join_;
   Welcome welcome_;
@@ -113,15 +124,7 @@ class ServerConnection {
   DatagramWriter writer_{Direction::down};  // of what is outside of the exchange
   TokenBucket bucket_;
   Congestion congestion_;
-  bool held_ = false;      // the last tick was not sent
-  bool proven_ = false;    // it knows the epoch: the address is its own
-  bool outdated_ = false;  // there is a newer scene
-  bool repeats_welcome_ = false;
   std::uint64_t welcome_at_ = 0, clock_at_ = 0, piece_at_ = 0;  // [us] when the next may go
-  std::optional<LeaveReason> left_;                             // said by the client
-  LeaveReason leaving_ = LeaveReason::bye;
-  unsigned leaves_ = 0;  // that are still to be sent
-  unsigned faults_ = 0;
   std::array<KnownHash, 32> hashes_{};
   std::size_t next_hash_ = 0;
   std::uint64_t wrong_states_ = 0;
@@ -130,11 +133,8 @@ class ServerConnection {
   std::int64_t next_tick_ = 0;      // of submit()
   std::uint64_t pace_at_ = 0;       // [us] when its changes go again
   ButtonsPart buttons_;
-  std::uint64_t playout_ = 0;           // [us] that the client reported last
-  bool tells_baselines_ = false;        // the client does not know yet that they are the acknowledged ones
-  std::uint64_t baselines_number_ = 0;  // of the first datagram that said so
-  std::uint8_t seat_ = 0;
-  bool seat_waits_ = false;                      // for an acknowledgement
+  std::uint64_t playout_ = 0;                    // [us] that the client reported last
+  std::uint64_t baselines_number_ = 0;           // of the first datagram that said so
   std::uint64_t seat_at_ = 0, seat_number_ = 0;  // [us] when it goes again; of the first datagram with it, 0: none yet
 };
 
