@@ -71,7 +71,6 @@ struct PrecisionPoint {
   int unconverged_steps = 0;
   std::string taken;   ///< if the method was chosen: which one
   std::string remark;  ///< why it stopped and there are no errors; "probe: ..." when only the force is missing
-
 };
 
 /// How often a run is timed after a warm-up. If that takes longer than `longest_repeated` [s], it is the only run timed.
