@@ -254,7 +254,7 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
   const bool wanted = piece || wants_pace(now) || wants_seat(now);
   const auto datagram = exchange_->poll(now, wanted, [&](DatagramWriter& writer, std::uint64_t number) {
     if (served_.shift && now >= clock_at_ && !writer.empty()) {  // together with an acknowledgement
-      writer.add(ClockPart{now - static_cast<std::uint64_t>(*served_.shift)});
+      writer.add(ClockPart{told_clock(now)});
       clock_at_ = now + (exchange_->path ? kDrivenClockEvery : kClockEvery);
     }
     const bool pace = pace_ && pace_->waits();
@@ -277,6 +277,15 @@ bool ServerConnection::tell_baselines(DatagramWriter& writer, std::uint64_t numb
   if (!tells_baselines_ || state_ != SessionState::live || !writer.add(BaselinesPart{1})) return false;
   if (baselines_number_ == 0) baselines_number_ = number;
   return true;
+}
+
+/// Not far beyond the ticks that were made: a world that pauses is not told to go on.   pre  there was a tick
+std::uint64_t ServerConnection::told_clock(std::uint64_t now) const noexcept {
+  constexpr std::uint64_t kBeyond = 20'000;  // [us]: ticks come unevenly
+  const std::uint64_t time = now - static_cast<std::uint64_t>(*served_.shift);
+  if (next_tick_ == 0) return time;  // it gets no ticks yet
+  const auto end = static_cast<std::uint64_t>(next_tick_ + 1), rate = std::uint64_t{served_.scene->tick_rate};
+  return std::min(time, served_.start + end / rate * 1'000'000 + end % rate * 1'000'000 / rate + kBeyond);
 }
 
 /// pre  there is one

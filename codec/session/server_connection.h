@@ -96,6 +96,7 @@ class ServerConnection {
   bool wants_piece(std::uint64_t now) const noexcept;
   bool wants_welcome(std::uint64_t now) const noexcept;
   void add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
+  std::uint64_t told_clock(std::uint64_t now) const noexcept;
   void add_seat(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
 
   bool repairs() const noexcept;

@@ -151,6 +151,7 @@ class PlayoutClock {
   std::int64_t heard_at_ = 0;          // [us]
   std::int64_t news_ = std::numeric_limits<std::int64_t>::min() / 4;  // [us] time of the ticks up to which something was heard
   std::int64_t lead_ = 0;                                             // [us] of it
+  std::int64_t told_ = 0;                                             // [us] newest time that a clock told
   std::optional<RoundTrip> repair_;
   bool waits_ = false;
   bool follows_ = false;  // nothing is known to have stood still since

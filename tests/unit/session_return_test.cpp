@@ -132,6 +132,26 @@ TEST(SessionReturn, AServerThatBeginsAnewGetsItsClientsBack) {
   EXPECT_EQ(visit.client().status().world, 4711u);
 }
 
+/// A program that pauses goes on with the next number: clients show that time again, and no tick that is not known.
+TEST(SessionReturn, AWorldThatPausesIsShownAsItGoesOn) {
+  for (const int pause : {50, 400, 3000}) {
+    Visit visit;
+    visit.run(2000);
+    for (int i = 0; i < pause; ++i) {
+      visit.world.step();
+      --visit.world.tick;
+      ASSERT_TRUE(visit.client().submit(visit.world.now, {}, {}));
+      ASSERT_LE(visit.client(1).shown_tick(visit.world.now), visit.world.tick + 123) << "while it pauses: the clock stands, too";
+    }
+    EXPECT_EQ(visit.client().force_share(visit.world.now), pause >= 400 ? 0 : 1) << pause;
+    visit.run(2500);
+    const std::int64_t behind = visit.world.tick - visit.client(1).shown_tick(visit.world.now);
+    EXPECT_GT(behind, 20) << pause << " ms: nothing of the future is shown";
+    EXPECT_LT(behind, 150) << pause;
+    EXPECT_EQ(visit.client().force_share(visit.world.now), 1) << pause;
+  }
+}
+
 TEST(SessionReturn, ASeatIsToldUntilItArrives) {
   Visit visit(0.3);
   visit.run(2000);
