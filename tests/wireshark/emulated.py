@@ -70,14 +70,14 @@ class Reference:
         self.found = []
         direction = row.number("tactus.direction")
         way = self.ways[direction]
-        way.decode = lambda number, packet: self.decode(way, number, packet)
+        way.decode = lambda _, number, packet: self.decode(way, number, packet)
         body = row.bytes[:-4]
         number = way.extend(struct.unpack("<H", body[:2])[0] >> 2)
         way.received.add(number)
         way.newest = max(way.newest, number)
         assert number == row.number("tactus.number"), row
         for kind, e in parts_of(body):
-            if kind in (session.PIECE, session.FRAGMENT, session.PACKET_PART):
+            if kind in (session.FRAGMENT, session.PACKET_PART) or kind == session.PIECE and direction == DOWN:
                 way.take_part(0, number, kind, session.elements_of(kind, direction, e))
         self.epoch.begin()
         if self.epoch.scene and not self.ways[UP].decoders:
