@@ -32,7 +32,7 @@ Result<std::unique_ptr<Server>> Server::create(const Scene& scene, const ServerO
 
 /// Add the rigid objects, and the other kinds if the scene has them.
 Result<void> Server::add_objects(const ServerOptions& options) {
-  auto rigid = std::make_unique<RigidObjects>(scene_);
+  auto rigid = std::make_unique<RigidObjects>(scene_, RigidEffort{.parts = options.parts});
   rigid_ = rigid.get();
   objects_.push_back(std::move(rigid));
   if (!scene_.msds.empty()) {
@@ -42,6 +42,8 @@ Result<void> Server::add_objects(const ServerOptions& options) {
   if (scene_.deformables.empty()) return {};
   TACTUS_TRY(auto deformables, make_deformable_objects(scene_, {.true_views = !options.codec && options.has_clients,
                                                                 .estimate_every = options.estimate_every,
+                                                                .parts = options.parts,
+                                                                .as_bodies = options.codec && options.codec->sessions,
                                                                 .report_at_rest = options.mesh_noise != 0}));
   for (const TraceDeformable& mesh : deformables->meshes())
     frame_.meshes.push_back({false, std::vector<float>(3 * mesh.rest.vertices.size())});
@@ -89,12 +91,14 @@ Result<void> Server::add_codec(const ServerCodec& codec) {
     }
     TACTUS_CHECK(add_deformable(builder, deformables_->meshes()[i], coding));
     if (!codec.sessions || coding.deformable.profile != DeformableProfile::main || coding.deformable.layered) continue;
-    if (auto physics = elastic_physics(scene_.deformables[i], scene_.gravity, codec.told)) builder.elastic(std::move(*physics));
+    if (auto physics = elastic_physics(scene_.deformables[i], scene_.gravity, deformables_->info()[i].shared, codec.told))
+      builder.elastic(std::move(*physics));
   }
   builder.promise(codec.sender.triggers, codec.sender.deformable.thresholds, codec.sender.load);
   constexpr std::uint8_t kBaselines = 64;
   if (codec.sessions) builder.baselines(kBaselines);
-  TACTUS_TRY(declared_, builder.build());
+  if (codec.sessions && scene_.interest) builder.interest(scene_.interest->full, scene_.interest->reach);
+  TACTUS_TRY(declared_, builder.build(codec.limits));
   truth_.emplace(info());
   if (codec.sessions) return {};
   TACTUS_TRY(sender_, Sender::create(declared_, codec.sender));

@@ -25,6 +25,7 @@ struct ServerCodec {
   TraceCoding coding{};   ///< of the scene's objects
   bool sessions = false;  ///< clients have sessions of their own, which code for them
   double told = 1;  ///< with sessions: mass and Young's modulus that clients are told, times the true ones; 0: they are told none
+  DecodeLimits limits{};  ///< of who takes the scene
 };
 
 struct ServerOptions {
@@ -32,6 +33,7 @@ struct ServerOptions {
   std::optional<ServerCodec> codec;  ///< none: nothing is sent, clients see the truth
   double mesh_noise = 0;             ///< [m] RMS per axis of white noise on every vertex of a shape that the server reports
   std::uint32_t estimate_every = 0;  ///< estimate the error of every n-th deformation, 0: of none
+  int parts = 1;                     ///< of each step of rigid and deformable objects
   bool has_clients = true;           ///< without a codec: there is somebody who sees the truth
 };
 
@@ -63,6 +65,7 @@ class Server {
   /// Scene declaration for the clients; null without a codec.
   SharedScene stream_scene() const noexcept { return declared_; }
   RigidObjects& rigid() noexcept { return *rigid_; }
+  const RigidObjects& rigid() const noexcept { return *rigid_; }
   DeformableObjects* deformables() const noexcept { return deformables_; }  ///< null: the scene has none
 
  private:

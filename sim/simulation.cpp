@@ -40,7 +40,7 @@ struct Simulation::Impl {
 };
 
 Result<Simulation> Simulation::create(const Scene& scene, const SimulationOptions& options) {
-  ServerOptions of_server{options.seed, {}, options.mesh_noise, options.estimate_every};
+  ServerOptions of_server{options.seed, {}, options.mesh_noise, options.estimate_every, options.parts};
   const bool is_remote = options.channel && options.channel->network;
   if (options.channel)
     of_server.codec = ServerCodec{options.channel->sender, options.channel->coding, is_remote, options.channel->told};
@@ -154,6 +154,7 @@ std::optional<Vec3> Simulation::touched_point(std::size_t user) const noexcept {
   const auto& contact = impl_->client(user).contact(user);
   return contact ? std::optional(contact->proxy) : std::nullopt;
 }
+const RigidErrors& Simulation::rigid_errors() const noexcept { return std::as_const(*impl_->server).rigid().errors(); }
 const DeformableObjects* Simulation::deformables() const noexcept { return impl_->server->deformables(); }
 const TouchSummary& Simulation::touched(std::size_t user) const noexcept { return impl_->records[user].summary(); }
 Replica& Simulation::replica() noexcept { return impl_->client(0).replica(); }

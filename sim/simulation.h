@@ -23,6 +23,7 @@
 #include <tactus/sender.h>
 #include <tactus/sim/deformable/deformable_objects.h>
 #include <tactus/sim/link/link.h>
+#include <tactus/sim/rigid/rigid_errors.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/touchable.h>
 #include <tactus/sim/user/passivity.h>
@@ -46,6 +47,7 @@ struct SimulationOptions {
   std::optional<ChannelOptions> channel;  ///< none: the client sees the true poses
   double mesh_noise = 0;                  ///< [m] RMS per axis of white noise on every vertex that the server reports
   std::uint32_t estimate_every = 0;       ///< estimate the error of every n-th deformation, 0: of none
+  int parts = 1;                          ///< of each step of rigid and deformable objects: 2 is half the step
 };
 
 class Simulation {
@@ -86,6 +88,7 @@ class Simulation {
   TraceInfo info() const;                                        ///< for a TraceWriter of these frames
   SharedScene stream_scene() const noexcept;                     ///< of the packets.   pre  there is a channel
   const DeformableObjects* deformables() const noexcept;         ///< null: the scene has none
+  const RigidErrors& rigid_errors() const noexcept;              ///< of the rigid objects
   const TouchSummary& touched(std::size_t user) const noexcept;  ///< all ticks so far
   /// [N/m] largest stable stiffness of a coupling to a fixed point (passivity.h)
   double bears(std::size_t user) const noexcept;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/sim/contact/aabb_tree.h>
 
 #include <algorithm>
@@ -241,7 +242,7 @@ Vec3 unit(const Vec3& v) {
   return length > 0 ? (1 / length) * v : Vec3{};
 }
 
-double angle(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
+double angle(const Vec3& a, const Vec3& b) { return angle_of(norm(cross(a, b)), dot(a, b)); }
 
 }  // namespace
 

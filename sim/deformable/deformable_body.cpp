@@ -47,9 +47,10 @@ Choice chosen_method(const SceneDeformable& object, const FemModel& model) {
   return choice;
 }
 
-DeformableBody::DeformableBody(FemModel model, const SceneDeformable& object, const Vec3& gravity)
+DeformableBody::DeformableBody(FemModel model, const SceneDeformable& object, const Vec3& gravity, int parts)
     : model_(std::move(model)),
       choice_(chosen_method(object, model_)),
+      parts_(parts),
       state_(model_.rest()),
       rate_(object.rate),
       weight_(model_.size()),
@@ -66,13 +67,14 @@ DeformableBody::DeformableBody(FemModel model, const SceneDeformable& object, co
   for (Eigen::Index i = 0; i < mass.size(); i += 3)
     weight_.segment<3>(i) = mass[i] * Eigen::Vector3d(gravity.x, gravity.y, gravity.z);
   if (gravity == Vec3{}) resting_ = kRestSteps;
+  choice_.options.step /= parts;
 }
 
 tl::expected<std::unique_ptr<DeformableBody>, Diagnostic> DeformableBody::create(const SceneDeformable& object,
                                                                                  const Vec3& gravity,
-                                                                                 std::uint32_t estimate_every) {
+                                                                                 std::uint32_t estimate_every, int parts) {
   TACTUS_TRY(auto model, FemModel::create(object.mesh, fem_options(object)));
-  std::unique_ptr<DeformableBody> body(new DeformableBody(std::move(model), object, gravity));
+  std::unique_ptr<DeformableBody> body(new DeformableBody(std::move(model), object, gravity, parts));
   TACTUS_TRY(auto integrator, make_integrator(body->model_, body->choice_.options));
   body->integrator_ = std::move(integrator);
   if (estimate_every > 0) {
@@ -101,12 +103,12 @@ tl::expected<DeformableBody::Tick, Diagnostic> DeformableBody::tick() {
   if (estimate_) estimate_->look(load_, state_);
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
-  TACTUS_CHECK(integrator_->step(load_, state_));
+  for (int part = 0; part < parts_; ++part) TACTUS_CHECK(integrator_->step(load_, state_));
   look_for_rest();
   move_surface();
   time_ = {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
            static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC};
-  if (balance_) balance_->add(load_, choice_.options.step, state_);
+  if (balance_) balance_->add(load_, parts_ * choice_.options.step, state_);
   return Tick::stepped;
 }
 

@@ -36,7 +36,7 @@ class DeformableBody {
 
   /// err  R-TET-n, R-FEM-1..4, 7, 8
   static tl::expected<std::unique_ptr<DeformableBody>, Diagnostic> create(const SceneDeformable& object, const Vec3& gravity,
-                                                                          std::uint32_t estimate_every);
+                                                                          std::uint32_t estimate_every, int parts = 1);
 
   /// Let a force [N] act on a triangle of the surface in this tick.   in  weights  of its corners
   void push(std::uint32_t triangle, std::span<const double, 3> weights, const Vec3& force) noexcept;
@@ -52,6 +52,7 @@ class DeformableBody {
   const MeshTopology& topology() const noexcept { return topology_; }
   const InsideTest& inside() const noexcept { return inside_; }
   std::span<const Vec3> vertices() const noexcept { return vertices_; }  ///< of the surface now, world frame
+  bool begins_frame() const noexcept { return phase_ == 0; }             ///< this tick is the first of its shape
   const AabbTree& tree() const noexcept { return tree_; }                ///< fitted to them
   const Choice& choice() const noexcept { return choice_; }
   const FemState& state() const noexcept { return state_; }
@@ -60,13 +61,14 @@ class DeformableBody {
   std::optional<EnergyBalance>& balance() noexcept { return balance_; }  ///< there with the estimate
 
  private:
-  DeformableBody(FemModel model, const SceneDeformable& object, const Vec3& gravity);
+  DeformableBody(FemModel model, const SceneDeformable& object, const Vec3& gravity, int parts);
   bool sleeps() const noexcept { return model_.free_dofs().empty() || (resting_ >= kRestSteps && !pushed_any_); }
   void move_surface() noexcept;
   void look_for_rest() noexcept;
 
   FemModel model_;
   Choice choice_;
+  int parts_;  // steps of a deformation
   std::unique_ptr<Integrator> integrator_;
   std::optional<ErrorEstimate> estimate_;
   std::optional<EnergyBalance> balance_;

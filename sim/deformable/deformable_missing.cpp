@@ -11,7 +11,9 @@ Result<std::unique_ptr<DeformableObjects>> make_deformable_objects(const Scene&,
   return fail(Errc::unsupported, "R-SIM-2");
 }
 
-std::optional<ElasticPhysics> elastic_physics(const SceneDeformable&, const Vec3&, double) { return std::nullopt; }
+std::optional<ElasticPhysics> elastic_physics(const SceneDeformable&, const Vec3&, const ElasticStep&, double) {
+  return std::nullopt;
+}
 
 Result<StiffnessMap> stiffness_map(const SceneDeformable&) { return fail(Errc::unsupported, "R-SIM-2"); }
 

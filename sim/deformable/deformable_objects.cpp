@@ -12,13 +12,16 @@ namespace {
 
 using Bodies = std::vector<std::unique_ptr<DeformableBody>>;
 
-SeenSurface as_computed(const DeformableBody& body) noexcept { return {body.vertices(), body.tree(), body.inside()}; }
+SeenSurface as_computed(const DeformableBody& body) noexcept {
+  return {body.vertices(), body.tree(), body.inside(), body.begins_frame()};
+}
 
-std::vector<TouchedSurface> surfaces_of(const Bodies& bodies, const Scene& scene) {
+std::vector<TouchedSurface> surfaces_of(const Bodies& bodies, const Scene& scene, bool as_bodies) {
   std::vector<TouchedSurface> out;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const SceneDeformable& object = scene.deformables[i];
-    out.push_back({bodies[i]->surface().mesh, bodies[i]->topology(), object.stiffness, object.friction, object.rate});
+    out.push_back({bodies[i]->surface().mesh, bodies[i]->topology(), object.stiffness, object.friction, object.rate,
+                   as_bodies && object.corotated});
   }
   return out;
 }
@@ -27,7 +30,7 @@ std::vector<TouchedSurface> surfaces_of(const Bodies& bodies, const Scene& scene
 class TrueView final : public Touchable {
  public:
   TrueView(const Bodies& bodies, const Scene& scene)
-      : bodies_(bodies), probes_(surfaces_of(bodies, scene), scene.users.size(), Following::linearly) {}
+      : bodies_(bodies), probes_(surfaces_of(bodies, scene, false), scene.users.size(), Following::linearly) {}
 
   Touch touch(std::size_t user, const DeviceSample& device, bool) noexcept override {
     return probes_.touch(user, device.position, [&](std::uint32_t i) { return as_computed(*bodies_[i]); });
@@ -73,6 +76,19 @@ class Objects final : public DeformableObjects {
   bool report_at_rest_ = false;
 };
 
+/// The method of a shared body that is that of the server, or comes nearest to it.
+ElasticStep shared_step(const IntegratorOptions& options) {
+  switch (options.method) {
+    case Method::velocity_verlet:
+      return {ElasticBody::Method::velocity_verlet, options.substeps};
+    case Method::backward_euler:
+    case Method::projective:
+      return {ElasticBody::Method::backward_euler};
+    default:
+      return {ElasticBody::Method::tr_bdf2};
+  }
+}
+
 /// Those vertices of a surface that are fixed.
 std::vector<std::uint32_t> fixed_of(const TetSurface& surface, std::span<const std::uint32_t> fixed) {
   std::vector<std::uint32_t> out;
@@ -83,7 +99,7 @@ std::vector<std::uint32_t> fixed_of(const TetSurface& surface, std::span<const s
 
 Objects::Objects(Bodies bodies, const Scene& scene, const DeformableOptions& options)
     : bodies_(std::move(bodies)),
-      probes_(surfaces_of(bodies_, scene), scene.users.size(), Following::at_once),
+      probes_(surfaces_of(bodies_, scene, options.as_bodies), scene.users.size(), Following::at_once),
       touches_(scene.users.size()),
       true_view_(options.true_views ? std::make_unique<TrueView>(bodies_, scene) : nullptr),
       last_(bodies_.size(), DeformableBody::Tick::between),
@@ -92,7 +108,7 @@ Objects::Objects(Bodies bodies, const Scene& scene, const DeformableOptions& opt
     const SceneDeformable& object = scene.deformables[i];
     const Choice& choice = bodies_[i]->choice();
     info_.push_back({object.name, object.mesh.vertices.size(), to_string(choice.options), choice.reason, choice.options.step,
-                     choice.largest_frequency});
+                     choice.largest_frequency, shared_step(choice.options)});
     const TetSurface& surface = bodies_[i]->surface();
     meshes_.push_back({object.name, surface.mesh, fixed_of(surface, object.fixed), static_cast<double>(object.rate)});
   }
@@ -153,7 +169,7 @@ void Objects::observe(TraceFrame& frame) noexcept {
 Result<std::unique_ptr<DeformableObjects>> make_deformable_objects(const Scene& scene, const DeformableOptions& options) {
   Bodies bodies;
   for (const SceneDeformable& object : scene.deformables) {
-    auto body = DeformableBody::create(object, scene.gravity, options.estimate_every);
+    auto body = DeformableBody::create(object, scene.gravity, options.estimate_every, options.parts);
     if (!body) return tl::unexpected(body.error().error);
     bodies.push_back(std::move(*body));
   }

@@ -17,6 +17,7 @@
 #include <span>
 #include <string>
 
+#include <tactus/sim/deformable/elastic_physics.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/touchable.h>
 #include <tactus/trace/frame.h>
@@ -31,6 +32,7 @@ struct DeformableInfo {
   std::string reason;            ///< why
   double step = 0;               ///< T_n [s]
   double largest_frequency = 0;  ///< [rad/s] at rest; 0: not measured, as the scene names the method
+  ElasticStep shared{};          ///< what comes nearest to it at a client that steps the object itself
 };
 
 /// Cost of a deformation [s]: wall clock, and CPU time of all threads of the process.
@@ -68,6 +70,8 @@ class DeformableObjects : public Simulated {
 struct DeformableOptions {
   bool true_views = true;            ///< clients see what is computed; else they have a DeformableView
   std::uint32_t estimate_every = 0;  ///< estimate the local error of every n-th deformation, 0: of none
+  int parts = 1;                     ///< of each step
+  bool as_bodies = false;            ///< touched as clients touch elastic bodies that they step themselves (deformable_probes.h)
   bool report_at_rest = false;       ///< observe() reports every shape that is due, also of sleeping objects
 };
 

@@ -23,13 +23,38 @@ double extent(const TriMesh& mesh) {
 
 }  // namespace
 
+BodyTouch::BodyTouch(const TouchedSurface& surface)
+    : object_([&] {
+        DeformableObject out;
+        out.rest.resize(surface.rest.vertices.size());
+        out.triangles = surface.rest.triangles;
+        out.body.emplace();
+        out.body->coupling = surface.stiffness;
+        out.body->friction = surface.friction;
+        return out;
+      }()),
+      touch_(object_) {}
+
+ProxyTouch BodyTouch::move(const Vec3& device, const SeenSurface& seen) noexcept {
+  const auto push = touch_.move(device, seen.is_new, seen.vertices, state_);
+  if (!push) return {};
+  const auto& [a, b, c] = object_.triangles[push->triangle];
+  const Vec3 &p = seen.vertices[a], &q = seen.vertices[b], &r = seen.vertices[c], n = cross(q - p, r - p);
+  return {.touched = true,
+          .triangle = push->triangle,
+          .weights = push->weights,
+          .proxy = push->weights[0] * p + push->weights[1] * q + push->weights[2] * r,
+          .normal = (1 / norm(n)) * n};
+}
+
 DeformableProbes::DeformableProbes(std::span<const TouchedSurface> objects, std::size_t users, Following following)
     : users_(users) {
   for (const TouchedSurface& object : objects) {
     stiffness_.push_back(object.stiffness);
     const MeshProxyOptions proxy{.friction = object.friction};
     for (User& user : users_) {
-      user.proxies.push_back({MeshProxy(proxy, extent(object.rest)), nullptr});
+      user.proxies.push_back({MeshProxy(proxy, extent(object.rest)), nullptr, nullptr});
+      if (object.as_body) user.proxies.back().body = std::make_unique<BodyTouch>(object);
       if (following == Following::linearly && object.rate > 1)
         user.proxies.back().cut_out = std::make_unique<IntermediateModel>(object.rest, object.topology,
                                                                           IntermediateModelOptions{kRings, object.rate, proxy});
@@ -38,7 +63,8 @@ DeformableProbes::DeformableProbes(std::span<const TouchedSurface> objects, std:
 }
 
 ProxyTouch DeformableProbes::move(User& user, std::uint32_t object, const SeenSurface& seen, const Vec3& device) noexcept {
-  auto& [direct, cut_out] = user.proxies[object];
+  auto& [direct, cut_out, body] = user.proxies[object];
+  if (body) return body->move(device, seen);
   if (cut_out) return user.placed ? cut_out->move(device) : cut_out->place(device, seen.vertices, seen.tree);
   return user.placed ? direct.move(device, seen.vertices, seen.tree)
                      : direct.place(device, seen.inside, seen.vertices, seen.tree);
@@ -55,7 +81,7 @@ Touch DeformableProbes::result(std::optional<std::uint32_t> object, const ProxyT
 void DeformableProbes::expect(std::uint32_t object, double reach, std::span<const Vec3> vertices, std::span<const Vec3> next,
                               const AabbTree& tree) noexcept {
   for (User& user : users_)
-    if (Proxy& proxy = user.proxies[object]; !proxy.cut_out) proxy.direct.expect(reach, vertices, next, tree);
+    if (Proxy& proxy = user.proxies[object]; !proxy.cut_out && !proxy.body) proxy.direct.expect(reach, vertices, next, tree);
 }
 
 void DeformableProbes::update(std::uint32_t object, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {

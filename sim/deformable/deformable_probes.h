@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <tactus/elastic/elastic_touch.h>
+#include <tactus/scene/scene_objects.h>
 #include <tactus/sim/contact/intermediate_model.h>
 #include <tactus/sim/contact/mesh_proxy.h>
 #include <tactus/sim/scene/scene.h>
@@ -25,6 +27,7 @@ struct SeenSurface {
   std::span<const Vec3> vertices;  // V x 3 [m], world frame
   const AabbTree& tree;            // fitted to them
   const InsideTest& inside;
+  bool is_new = false;  // the shape is the one that this tick began with
 };
 
 /// What a proxy needs of an object.
@@ -34,6 +37,21 @@ struct TouchedSurface {
   double stiffness = 0;    // [N/m] of the coupling
   double friction = 0;     // mu
   std::uint32_t rate = 1;  // ticks from shape to shape
+  bool as_body = false;    // touched as clients touch an elastic body that they step themselves, not by a MeshProxy
+};
+
+/// The touch of an elastic body, spec/55-elastic.md section 4: server and clients then differ in nothing but the shape.
+class BodyTouch {
+ public:
+  explicit BodyTouch(const TouchedSurface& surface);
+  BodyTouch(const BodyTouch&) = delete;  // its touch refers to its object
+  BodyTouch& operator=(const BodyTouch&) = delete;
+  ProxyTouch move(const Vec3& device, const SeenSurface& seen) noexcept;
+
+ private:
+  DeformableObject object_;
+  ElasticTouch touch_;
+  ElasticTouch::State state_;
 };
 
 enum class Following : std::uint8_t {
@@ -77,6 +95,7 @@ class DeformableProbes {
   struct Proxy {
     MeshProxy direct;
     std::unique_ptr<IntermediateModel> cut_out;  // none: direct
+    std::unique_ptr<BodyTouch> body;             // in their place
   };
   struct User {
     std::vector<Proxy> proxies;  // one per object

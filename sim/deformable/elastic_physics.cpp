@@ -35,9 +35,19 @@ bool add_materials(const SceneDeformable& object, double told, ElasticBody& body
   return true;
 }
 
+/// So many sub-steps that velocity Verlet is stable, `least` or more.   out  false: there is no such number
+bool choose_sub_steps(const SceneDeformable& object, const TriMesh& surface, int least, ElasticPhysics& physics) {
+  for (int n = least; n <= ElasticBody::kMostSubSteps; ++n) {
+    physics.body.sub_steps = static_cast<std::uint8_t>(n);
+    if (SceneBuilder::steps_stably(physics, surface.vertices, object.rate * kTick)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, const Vec3& gravity, double told) {
+std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, const Vec3& gravity, const ElasticStep& step,
+                                              double told) {
   if (!object.corotated || told == 0) return std::nullopt;
   const TetSurface surface = tactus::sim::surface(object.mesh);
   ElasticPhysics out{.body = {.inner = {},
@@ -49,7 +59,8 @@ std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, con
                               .stiffness_damping = object.stiffness_damping,
                               .gravity = gravity,
                               .coupling = object.stiffness,
-                              .friction = object.friction}};
+                              .friction = object.friction,
+                              .method = step.method}};
   if (!add_materials(object, told, out.body)) return std::nullopt;
   const std::vector<std::uint32_t> number = numbers(object.mesh, surface, out.inner);
   for (Tet& tet : out.body.tets)
@@ -57,6 +68,8 @@ std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, con
   for (const std::uint32_t v : object.fixed) out.body.fixed.push_back(number[v]);
   std::ranges::sort(out.body.fixed);
   out.body.fixed.erase(std::unique(out.body.fixed.begin(), out.body.fixed.end()), out.body.fixed.end());
+  if (step.method == ElasticBody::Method::velocity_verlet && !choose_sub_steps(object, surface.mesh, step.sub_steps, out))
+    return std::nullopt;
   if (!SceneBuilder::can_work_out(out, surface.vertex.size())) return std::nullopt;
   return out;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/sim/fem/explicit.h>
 
 #include <cmath>
@@ -16,10 +17,10 @@ VelocityVerlet::VelocityVerlet(FemModel& model, const IntegratorOptions& options
   const double reach = part_ * model.largest_frequency() / 2;
   if (reach < 1) swing_ = 1 / (1 - reach * reach);
   const double alpha = model.options().mass_damping;
-  const double kick = alpha > 0 ? -std::expm1(-part_ / 2 * alpha) / alpha : part_ / 2;
+  const double kick = alpha > 0 ? -exponential_less_one(-part_ / 2 * alpha) / alpha : part_ / 2;
   const bool lumped = model.options().mass == MassMatrix::lumped;
   for (const int i : model.free_dofs()) {
-    decay_[i] = std::exp(-part_ / 2 * alpha);
+    decay_[i] = exponential(-part_ / 2 * alpha);
     kick_[i] = kick / (lumped ? model.lumped_mass()[i] : 1.0);
   }
   if (lumped || model.free_dofs().empty()) return;

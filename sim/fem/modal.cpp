@@ -15,7 +15,7 @@ Eigen::Matrix<double, 2, 3> exact_step(double lambda, double damping, double h) 
   Eigen::Matrix3d A;
   A << 0, 1, 0, -lambda * h * h, -damping * h, 1, 0, 0, 0;
   const double size = A.cwiseAbs().rowwise().sum().maxCoeff();
-  const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(size))) + 2);
+  const int halvings = std::max(0, std::ilogb(size) + 3);
   A /= std::ldexp(1.0, halvings);
   Eigen::Matrix3d sum = Eigen::Matrix3d::Identity(), term = sum;
   for (int i = 1; i <= 16; ++i) {

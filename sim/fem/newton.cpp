@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/sim/fem/newton.h>
 
 #include <algorithm>
@@ -98,7 +99,7 @@ tl::expected<StepReport, Diagnostic> Newton::solve(const Stage& stage, Eigen::Ve
     if (report.newton_iterations == 1 && shrinkage_ * decrease <= enough) {
       // Earlier stages predict what a second iteration would add (Hairer and Wanner 1996, IV.8).
       report.converged = true;
-      shrinkage_ = std::pow(shrinkage_, kAge);
+      shrinkage_ = power(shrinkage_, kAge);
     }
     if (report.converged || iterations_ == 1) break;
     if (!search(stage, decrease, u)) direction_->forget();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/sim/link/link.h>
 
 #include <algorithm>
@@ -49,21 +50,21 @@ bool are_valid(const LinkOptions& o) noexcept {
 double normal(Random& random) noexcept {
   while (true) {
     const double u = random.uniform(-1, 1), v = random.uniform(-1, 1), s = u * u + v * v;
-    if (s > 0 && s < 1) return u * std::sqrt(-2 * std::log(s) / s);
+    if (s > 0 && s < 1) return u * std::sqrt(-2 * logarithm(s) / s);
   }
 }
 
 /// Gamma with this shape and scale 1 (Marsaglia and Tsang 2000).
 double gamma(Random& random, double shape) noexcept {
   if (shape < 1) {
-    const double power = std::pow(random.uniform(0, 1), 1 / shape);
-    return gamma(random, shape + 1) * power;
+    const double share = power(random.uniform(0, 1), 1 / shape);
+    return gamma(random, shape + 1) * share;
   }
   const double d = shape - 1.0 / 3, c = 1 / std::sqrt(9 * d);
   while (true) {
     const double x = normal(random), root = 1 + c * x;
     const double u = random.uniform(0, 1), v = root * root * root;
-    if (v > 0 && std::log(u) < 0.5 * x * x + d - d * v + d * std::log(v)) return d * v;
+    if (v > 0 && logarithm(u) < 0.5 * x * x + d - d * v + d * logarithm(v)) return d * v;
   }
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/sim/prediction/prediction.h>
 
 #include <algorithm>
@@ -79,15 +80,15 @@ Vec3 turn_of(const Quat& q) noexcept {
   const Vec3 axis{q.x, q.y, q.z};
   const double sine = norm(axis);
   if (!(sine > 0)) return {};
-  const double angle = 2 * std::atan2(sine, std::abs(q.w));
+  const double angle = 2 * angle_of(sine, std::abs(q.w));
   return ((q.w < 0 ? -angle : angle) / sine) * axis;
 }
 
 Quat quaternion_of(const Vec3& turn) noexcept {
   const double angle = norm(turn);
   if (!(angle > 0)) return {};
-  const Vec3 axis = (std::sin(angle / 2) / angle) * turn;
-  return {std::cos(angle / 2), axis.x, axis.y, axis.z};
+  const Vec3 axis = (sine(angle / 2) / angle) * turn;
+  return {cosine(angle / 2), axis.x, axis.y, axis.z};
 }
 
 Quat normalised(const Quat& q) noexcept {
@@ -236,7 +237,7 @@ void Prediction::correct_shape(std::size_t number, std::int64_t then) noexcept {
   auto& [past, period, is_new] = meshes_[number];
   const std::int64_t now = own_->frame().tick;
   const bool heard = past.heard_age() >= 0;
-  if (heard) past.compare(static_cast<double>(then) - past.heard_age(), 1 - std::exp(-period * kTick / kSettleYielding));
+  if (heard) past.compare(static_cast<double>(then) - past.heard_age(), 1 - exponential(-period * kTick / kSettleYielding));
   // While the own simulation goes on, its shapes take along what was heard: one new shape in each period.
   is_new = past.newest() == now || (heard && static_cast<double>(now - past.newest()) >= period);
   if (is_new) past.show();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts between objects, and the steps of the groups they form.
+// Contacts between objects, and the groups they form.
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include <tactus/sim/rigid/rigid_parts.h>
@@ -9,10 +10,31 @@ namespace tactus::sim {
 
 using namespace rigid;
 
+namespace {
+
+constexpr double kSwept = 1e-4;     // [m] a pair that approaches by less in a tick is not swept
+constexpr double kClose = 1e-5;     // [m] apart: the place of a touch is known well enough
+constexpr double kMostLooks = 256;  // along the way of one tick
+
+}  // namespace
+
+/// With the way that it goes in this tick if nothing stops it.
 Extent RigidWorld::Impl::bounds(std::uint32_t body) const {
   dReal box[6];
   dGeomGetAABB(bodies[body].geom, box);
-  return {{box[0], box[2], box[4]}, {box[1], box[3], box[5]}};
+  Extent out{{box[0], box[2], box[4]}, {box[1], box[3], box[5]}};
+  const Vec3 d = way(body);
+  (d.x < 0 ? out.low : out.high).x += d.x;
+  (d.y < 0 ? out.low : out.high).y += d.y;
+  (d.z < 0 ? out.low : out.high).z += d.z;
+  return out;
+}
+
+/// [m] of the next tick, as if nothing touched it; zero for one that hardly moves.
+Vec3 RigidWorld::Impl::way(std::uint32_t body) const {
+  if (body == kFloor || !bodies[body].handle || !bodies[body].awake) return {};
+  const Vec3 d = h * vec(dBodyGetLinearVel(bodies[body].handle));
+  return norm(d) < kSwept ? Vec3{} : d;
 }
 
 void RigidWorld::Impl::rebuild_resting() {
@@ -27,7 +49,66 @@ void RigidWorld::Impl::rebuild_resting() {
 int RigidWorld::Impl::collide(dGeomID a, dGeomID b) {
   const bool on_mesh = dGeomGetClass(a) == dTriMeshClass || dGeomGetClass(b) == dTriMeshClass;
   const int count = dCollide(a, b, on_mesh ? kMostFound : kMaxContacts, &found[0].geom, sizeof(dContact));
+  for (dContact& contact : std::span(found).first(static_cast<std::size_t>(count))) contact.surface = {};
   return on_mesh ? keep_outermost(std::span(found).first(static_cast<std::size_t>(count)), kMaxContacts) : count;
+}
+
+/// Contacts after a share of this tick's way, into `found`.
+int RigidWorld::Impl::collide_at(const Pair& pair, double share) {
+  const auto shift = [this](std::uint32_t body, double by) {
+    const Vec3 d = way(body);
+    if (d == Vec3{}) return;
+    const Vec3 x = bodies[body].swept_from + by * d;
+    dGeomSetPosition(bodies[body].geom, x.x, x.y, x.z);
+  };
+  for (const std::uint32_t i : {pair.a, pair.b})
+    if (i != kFloor && bodies[i].handle) bodies[i].swept_from = vec(dBodyGetPosition(bodies[i].handle));
+  shift(pair.a, share);
+  shift(pair.b, share);
+  const int count = collide(geom(pair.a), geom(pair.b));
+  shift(pair.a, 0);
+  shift(pair.b, 0);
+  return count;
+}
+
+/// [m] edge of a body that may be passed unnoticed.
+double RigidWorld::Impl::smallest(std::uint32_t body) const {
+  const Vec3& size = bodies[body].spec.size;
+  return std::min({size.x, size.y, size.z});
+}
+
+/// Two that do not touch yet, but do within this tick: they may come as near as they are, not nearer. Otherwise what is fast would pass
+/// what is thin, or be found deep inside, and thrown out.
+int RigidWorld::Impl::sweep(const Pair& pair) {
+  const Vec3 way_a = way(pair.a), way_b = way(pair.b), relative = way_a - way_b;
+  const double length = norm(relative);
+  if (length < kSwept) return 0;
+  double look = smallest(pair.a) / 2;
+  if (way_b != Vec3{}) look = std::min(look, smallest(pair.b) / 2);
+  const double looks = std::min(kMostLooks, std::ceil(length / look));
+  if (length > looks * 2 * look) errors.unswept.add(length / h, tick, way_a == Vec3{} ? pair.b : pair.a);
+  double before = 0, at = 0;
+  for (double k = 1; k <= looks && at == 0; ++k) {
+    if (collide_at(pair, k / looks) > 0) at = k / looks;
+    else before = k / looks;
+  }
+  if (at == 0) return 0;
+  while ((at - before) * length > kClose) {
+    const double middle = (before + at) / 2;
+    (collide_at(pair, middle) > 0 ? at : before) = middle;
+  }
+  const int count = collide_at(pair, at);
+  int kept = 0;
+  for (dContact& contact : std::span(found).first(static_cast<std::size_t>(count))) {
+    const double nearer = -at * dot(vec(contact.geom.normal), relative);
+    if (nearer <= 0) continue;
+    contact.surface.motionN = -(nearer - contact.geom.depth) / h;
+    contact.geom.depth = 0;
+    const Vec3 back = pair.b == kFloor || !bodies[pair.b].handle ? at * way_a : (0.5 * at) * (way_a + way_b);
+    for (int k = 0; k < 3; ++k) contact.geom.pos[k] -= (&back.x)[k];
+    found[static_cast<std::size_t>(kept++)] = contact;
+  }
+  return kept;
 }
 
 /// Test awake bodies against resting ones. A sleeping body that is hit wakes, and so do the bodies it touches.
@@ -41,7 +122,7 @@ void RigidWorld::Impl::find_pairs() {
     resting.visit(box, [&](std::uint32_t other) {
       Body& body = bodies[other];
       if (!body.handle) pairs.push_back({i, other});
-      if (!body.handle || body.awake || collide(geom(i), body.geom) == 0) return;
+      if (!body.handle || body.awake || (collide(geom(i), body.geom) == 0 && sweep({.a = i, .b = other}) == 0)) return;
       wake(other);
       groups.push_back(other);
     });
@@ -70,8 +151,9 @@ bool RigidWorld::Impl::find_contacts() {
     bodies[i].touches = false;
   }
   for (Pair& pair : pairs) {
-    const int count = collide(geom(pair.a), geom(pair.b));
+    int count = collide(geom(pair.a), geom(pair.b));
     pair.first = touching.size();
+    if (count == 0) count = sweep(pair);
     pair.count = static_cast<std::size_t>(count);
     touching.insert(touching.end(), found.begin(), found.begin() + count);
     if (touching.size() > kMostTouching) return false;
@@ -90,30 +172,6 @@ std::uint32_t RigidWorld::Impl::group_of(std::uint32_t body) {
   return body;
 }
 
-/// Turn the contacts of a pair into joints.
-void RigidWorld::Impl::attach(const Pair& pair) {
-  const Body& first = bodies[pair.a];
-  const Body* const second = body(pair.b);
-  for (std::size_t i = pair.first; i < pair.first + pair.count; ++i) {
-    dContact& contact = touching[i];
-    contact.surface = {};
-    contact.surface.mode = dContactApprox1;
-    contact.surface.mu = second ? std::min(first.mu, second->mu) : first.mu;
-    const Vec3 point = vec(contact.geom.pos), normal = vec(contact.geom.normal);
-    const Vec3 relative = velocity_without_contact(&first, point) - velocity_without_contact(second, point);
-    const Vec3 sliding = relative - dot(relative, normal) * normal;
-    if (const double speed = norm(sliding); speed > kSliding) {
-      contact.surface.mode |= dContactFDir1;
-      contact.fdir1[0] = sliding.x / speed;
-      contact.fdir1[1] = sliding.y / speed;
-      contact.fdir1[2] = sliding.z / speed;
-    }
-    const dJointID joint = dJointCreateContact(world, contacts, &contact);
-    dJointAttach(joint, first.handle, second ? second->handle : nullptr);
-    if (tells_loads) dJointSetFeedback(joint, &forces[i]);
-  }
-}
-
 /// Sort bodies and pairs by group. Bodies that touch nothing form one group, without pairs.
 void RigidWorld::Impl::make_groups() {
   for (const std::uint32_t i : awake) bodies[i].island = bodies[i].touches ? group_of(i) : kFloor;
@@ -124,53 +182,6 @@ void RigidWorld::Impl::make_groups() {
   groups = awake;
   std::sort(groups.begin(), groups.end(),
             [this](std::uint32_t a, std::uint32_t b) { return std::pair(bodies[a].island, a) < std::pair(bodies[b].island, b); });
-}
-
-/// What the contacts of a pair can oppose to a motion along them.
-void RigidWorld::Impl::add_hold(const Pair& pair) {
-  for (std::size_t i = pair.first; i < pair.first + pair.count; ++i) {
-    const Vec3 normal = vec(touching[i].geom.normal);
-    const Vec3 limit = touching[i].surface.mu * std::max(0.0, dot(vec(forces[i].f1), normal)) * normal;
-    const auto add = [&limit](Vec3& hold) { hold = dot(hold, limit) < 0 ? hold - limit : hold + limit; };
-    add(bodies[pair.a].load.hold);
-    if (pair.b != kFloor) add(bodies[pair.b].load.hold);
-  }
-}
-
-/// Of the bodies that were stepped, before their own forces are forgotten.
-void RigidWorld::Impl::tell_loads() {
-  for (const std::uint32_t i : awake) {
-    Body& body = bodies[i];
-    const Vec3 change = vec(dBodyGetLinearVel(body.handle)) - body.before.velocity;
-    body.load = {.external = body.spec.mass / kTick * change - body.force, .hold = {}};
-  }
-  for (const Pair& pair : pairs) add_hold(pair);
-}
-
-/// QuickStep shuffles its constraints with the one random generator of the process. The generator is seeded and groups are stepped one
-/// by one, so that a group's result depends on this group alone, not on other groups or whether they sleep.
-void RigidWorld::Impl::step_groups() {
-  const auto switch_all = [this](void (*to)(dBodyID)) {
-    for (const std::uint32_t i : groups) to(bodies[i].handle);
-  };
-  if (tells_loads) forces.assign(touching.size(), {});
-  const bool are_several = !groups.empty() && bodies[groups.front()].island != bodies[groups.back()].island;
-  if (are_several) switch_all(dBodyDisable);
-  auto pair = pairs.begin();
-  for (auto first = groups.begin(); first != groups.end();) {
-    const std::uint32_t island = bodies[*first].island;
-    const auto last = std::find_if(first, groups.end(), [&](std::uint32_t i) { return bodies[i].island != island; });
-    dJointGroupEmpty(contacts);
-    for (; pair != pairs.end() && bodies[pair->a].island == island; ++pair) attach(*pair);
-    if (are_several)
-      for (auto i = first; i != last; ++i) dBodyEnable(bodies[*i].handle);
-    dRandSetSeed(static_cast<unsigned long>(tick));
-    dWorldQuickStep(world, kTick);
-    if (are_several)
-      for (auto i = first; i != last; ++i) dBodyDisable(bodies[*i].handle);
-    first = last;
-  }
-  if (are_several) switch_all(dBodyEnable);
 }
 
 }  // namespace tactus::sim

@@ -58,7 +58,7 @@ class RestWatch {
 class RigidObjects final : public Simulated {
  public:
   /// pre  every call on the same thread (RigidWorld)
-  explicit RigidObjects(const Scene& scene);
+  explicit RigidObjects(const Scene& scene, const RigidEffort& effort = {});
 
   /// pre  `frame` is that of the tick before, has room for all objects of the scene, and frame.changed is set with capacity for them
   /// time O(objects that moved)
@@ -73,6 +73,7 @@ class RigidObjects final : public Simulated {
   void push_centre(std::uint32_t object, const Vec3& force) noexcept { world_.push(object, force, poses_[object].position); }
 
   Vec3 inertia(std::uint32_t object) const noexcept { return world_.inertia(object); }  ///< RigidWorld::inertia
+  const RigidErrors& errors() const noexcept { return world_.errors(); }
 
   /// Forces of the last step on every rigid and one-dimensional object of the scene, those on the latter zero; empty unless
   /// tells_loads(scene).

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/sim/rigid/rigid_world.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 
 #include <tactus/base/rule.h>
 #include <tactus/sim/rigid/rigid_parts.h>
@@ -15,45 +16,29 @@ namespace {
 
 using namespace rigid;
 
-// Depth of resting boxes in their support [m]: at depth 0 rounding would open and close the contact in turn. The floor is raised by
-// as much, so that a box on it rests at the height the scene gives.
-constexpr double kSurfaceLayer = 1e-5;
-// dWorldStep loses friction for single ticks ("LCP internal error" on a pushed cube that sticks). QuickStep does not; for one
-// cube on the floor its error in the friction force falls from 3e-2 (20 iterations) over 1e-6 (50) to 1e-8 (100) of mu N.
-constexpr int kIterations = 100;
 constexpr std::uint32_t kStillTicks = 16;
 
-// Faster objects cannot be stepped sensibly, and ODE aborts the process when a rotation overflows.
-constexpr double kFastest = 1e4;      // [m/s]
-constexpr double kFastestTurn = 1e5;  // [rad/s]
-
-/// Components of v along the axes whose bits are set, starting at bit `first`.
-Vec3 along_free(const Vec3& v, std::uint8_t dof, int first) {
-  return {dof >> first & 1 ? v.x : 0.0, dof >> (first + 1) & 1 ? v.y : 0.0, dof >> (first + 2) & 1 ? v.z : 0.0};
-}
-
-/// Neither NaN nor too fast.
-bool can_step(const Motion& motion) { return norm(motion.velocity) < kFastest && norm(motion.angular_velocity) < kFastestTurn; }
-
-Rows inverse_of(const dMass& mass) {
+Inertia inertia_of(const dMass& mass) {
   const dReal* i = mass.I;
-  if (i[1] == 0 && i[2] == 0 && i[6] == 0) return {{1 / i[0], 0, 0}, {0, 1 / i[5], 0}, {0, 0, 1 / i[10]}};
+  const Rows moments{vec(i), vec(i + 4), vec(i + 8)};
+  if (i[1] == 0 && i[2] == 0 && i[6] == 0)
+    return {.moments = moments,
+            .inverse = {{1 / i[0], 0, 0}, {0, 1 / i[5], 0}, {0, 0, 1 / i[10]}},
+            .is_spherical = i[0] == i[5] && i[5] == i[10]};
   dMatrix3 inverse{};
   dInvertPDMatrix(mass.I, inverse, 3);
-  return {vec(inverse), vec(inverse + 4), vec(inverse + 8)};
-}
-
-bool are_same(const RigidSample& a, const RigidSample& b) {
-  using Bits = std::array<std::uint64_t, 13>;
-  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+  return {.moments = moments, .inverse = {vec(inverse), vec(inverse + 4), vec(inverse + 8)}};
 }
 
 }  // namespace
 
-RigidWorld::Impl::Impl(const Scene& scene) : gravity(scene.gravity), tells_loads(sim::tells_loads(scene)) {
-  dWorldSetGravity(world, gravity.x, gravity.y, gravity.z);
+RigidWorld::Impl::Impl(const Scene& scene, const RigidEffort& effort)
+    : gravity(scene.gravity),
+      h(kTick / effort.parts),
+      parts(effort.parts),
+      iterations(effort.iterations),
+      tells_loads(sim::tells_loads(scene)) {
   dWorldSetContactSurfaceLayer(world, kSurfaceLayer);
-  dWorldSetQuickStepNumIterations(world, kIterations);
   if (scene.floor) {
     floor_height = *scene.floor + kSurfaceLayer;
     floor = dCreatePlane(nullptr, 0, 0, 1, floor_height);
@@ -63,6 +48,7 @@ RigidWorld::Impl::Impl(const Scene& scene) : gravity(scene.gravity), tells_loads
   const bool any_mesh = std::any_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.mesh != nullptr; });
   found.resize(any_mesh ? kMostFound : kMaxContacts);
   changed.resize(bodies.size());
+  errors.objects.resize(bodies.size());
   std::iota(changed.begin(), changed.end(), 0U);
   for (auto* numbers : {&awake, &groups}) numbers->reserve(moving.size());
   order.reserve(moving.size());
@@ -84,6 +70,7 @@ RigidWorld::Impl::~Impl() {
 void RigidWorld::Impl::add(const SceneObject& spec) {
   Body& body = bodies.emplace_back();
   body.spec = spec;
+  if (parts > 1) body.spec.damping = power(spec.damping, 1.0 / parts);
   body.mu = spec.friction;
   if (!spec.surface.triangles.empty()) {
     body.mesh = make_ode_mesh(body.spec.surface);
@@ -95,9 +82,12 @@ void RigidWorld::Impl::add(const SceneObject& spec) {
     dMass mass;
     if (body.mesh) mass = mass_of_mesh(body.geom, spec.mass);
     else dMassSetBoxTotal(&mass, spec.mass, spec.size.x, spec.size.y, spec.size.z);
-    body.inverse_inertia = inverse_of(mass);
+    body.inertia = inertia_of(mass);
     body.handle = dBodyCreate(world);
     dBodySetMass(body.handle, &mass);
+    dBodySetGravityMode(body.handle, 0);
+    dBodySetGyroscopicMode(body.handle, 0);
+    set_motion(body.handle, {spec.velocity, spec.angular_velocity});
     body.mover = moving.size();
     moving.push_back(spec.pose);
     body.awake = true;
@@ -111,61 +101,6 @@ void RigidWorld::Impl::add(const SceneObject& spec) {
   dGeomSetQuaternion(body.geom, rotation);
 }
 
-/// Velocities at the end of this step if nothing but gravity and pushes acted.
-rigid::Motion RigidWorld::Impl::motion_without_contact(const Body& body) const {
-  const Quat rotation = quaternion(body.handle);
-  const Vec3 torque = rotate(conjugate(rotation), body.torque);
-  return {vec(dBodyGetLinearVel(body.handle)) + kTick * (gravity + (1 / body.spec.mass) * body.force),
-          vec(dBodyGetAngularVel(body.handle)) + kTick * rotate(rotation, body.inverse_inertia * torque)};
-}
-
-Vec3 RigidWorld::Impl::velocity_without_contact(const Body* body, const Vec3& point) const {
-  if (!body || !body->handle) return {};
-  const Motion motion = motion_without_contact(*body);
-  return motion.velocity + cross(motion.angular_velocity, point - vec(dBodyGetPosition(body->handle)));
-}
-
-/// Damp the velocities, then project the object back onto its free axes.
-void RigidWorld::Impl::project(Body& body) const {
-  const std::uint8_t dof = body.spec.dof;
-  const Vec3 v = body.spec.damping * along_free(vec(dBodyGetLinearVel(body.handle)), dof, 0);
-  const Vec3 w = body.spec.damping * along_free(vec(dBodyGetAngularVel(body.handle)), dof, 3);
-  dBodySetLinearVel(body.handle, v.x, v.y, v.z);
-  dBodySetAngularVel(body.handle, w.x, w.y, w.z);
-  if (dof == Dof::all) return;
-
-  const Vec3& home = body.spec.pose.position;
-  const Vec3 x = vec(dBodyGetPosition(body.handle));
-  dBodySetPosition(body.handle, dof & Dof::x ? x.x : home.x, dof & Dof::y ? x.y : home.y, dof & Dof::z ? x.z : home.z);
-  const unsigned turns = static_cast<unsigned>(dof) >> 3;
-  if (turns == 7) return;
-  const Quat& start = body.spec.pose.rotation;
-  const Quat turned = quaternion(body.handle) * conjugate(start);
-  const Vec3 axis = along_free({turned.x, turned.y, turned.z}, dof, 3);
-  const double length = std::sqrt(turned.w * turned.w + dot(axis, axis));
-  const Quat kept = turns == 0 ? start : Quat{turned.w / length, axis.x / length, axis.y / length, axis.z / length} * start;
-  const dQuaternion rotation{kept.w, kept.x, kept.y, kept.z};
-  dBodySetQuaternion(body.handle, rotation);
-}
-
-/// The solver's residual is not motion. A standing object keeps standing up to a higher speed, so that another order of the
-/// constraints does not start it.
-void RigidWorld::Impl::stand_still(Body& body) const {
-  const bool is_pushed = body.force != Vec3{} || body.torque != Vec3{};
-  const double speed = norm(vec(dBodyGetLinearVel(body.handle))) + body.reach * norm(vec(dBodyGetAngularVel(body.handle)));
-  body.stands = body.touches && !is_pushed && speed < (body.stands ? 10 : 1) * kStandstill;
-  if (body.stands) {
-    const auto& [x, q] = body.before.pose;
-    const dQuaternion rotation{q.w, q.x, q.y, q.z};
-    dBodySetPosition(body.handle, x.x, x.y, x.z);
-    dBodySetQuaternion(body.handle, rotation);
-    std::copy_n(rotation, 4, const_cast<dReal*>(dBodyGetQuaternion(body.handle)));  // ODE normalised it, which changes bits
-    dBodySetLinearVel(body.handle, 0, 0, 0);
-    dBodySetAngularVel(body.handle, 0, 0, 0);
-  }
-  body.still = !is_pushed && are_same(sample(body), body.before) ? body.still + 1 : 0;
-}
-
 RigidSample RigidWorld::Impl::sample(const Body& body) const {
   if (!body.handle) return {.pose = body.spec.pose, .velocity = {}, .angular_velocity = {}};
   return {.pose = {vec(dBodyGetPosition(body.handle)), quaternion(body.handle)},
@@ -177,6 +112,7 @@ void RigidWorld::Impl::put_to_sleep(std::uint32_t number) {
   Body& body = bodies[number];
   dBodyDisable(body.handle);
   body.awake = false;
+  body.starts = true;
   std::erase(awake, number);
   resting_is_old = true;
 }
@@ -202,8 +138,7 @@ void RigidWorld::Impl::let_piles_sleep() {
   for (const std::uint32_t i : groups) {
     const Body& body = bodies[i];
     if (!body.awake || !watch.rests(body.mover)) continue;
-    dBodySetLinearVel(body.handle, 0, 0, 0);
-    dBodySetAngularVel(body.handle, 0, 0, 0);
+    set_motion(body.handle, {});
     put_to_sleep(i);
   }
 }
@@ -217,7 +152,7 @@ void RigidWorld::Impl::wake(std::uint32_t number) {
   awake.insert(std::lower_bound(awake.begin(), awake.end(), number), number);
 }
 
-RigidWorld::RigidWorld(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+RigidWorld::RigidWorld(const Scene& scene, const RigidEffort& effort) : impl_(std::make_unique<Impl>(scene, effort)) {}
 RigidWorld::RigidWorld(RigidWorld&&) noexcept = default;
 RigidWorld& RigidWorld::operator=(RigidWorld&&) noexcept = default;
 RigidWorld::~RigidWorld() = default;
@@ -227,8 +162,8 @@ void RigidWorld::push(std::uint32_t object, const Vec3& force, const Vec3& point
   if (!body.handle || force == Vec3{}) return;
   impl_->watch.disturb(body.mover);
   impl_->wake(object);
-  body.force = body.force + force;
-  body.torque = body.torque + along_free(cross(point - vec(dBodyGetPosition(body.handle)), force), body.spec.dof, 3);
+  body.push.force = body.push.force + force;
+  body.push.torque = body.push.torque + along_free(cross(point - vec(dBodyGetPosition(body.handle)), force), body.spec.dof, 3);
 }
 
 void RigidWorld::place(std::uint32_t object, const Pose& pose) noexcept {
@@ -250,45 +185,42 @@ std::span<const std::uint32_t> RigidWorld::changed() const noexcept { return imp
 tl::expected<void, Diagnostic> RigidWorld::step() {
   Impl& in = *impl_;
   in.changed.clear();
-  if (in.awake.empty()) {
-    ++in.tick;
-    return {};
-  }
+  for (in.part = 0; in.part < in.parts && !in.awake.empty(); ++in.part) TACTUS_CHECK(in.step());
+  std::ranges::sort(in.changed);
+  in.changed.erase(std::unique(in.changed.begin(), in.changed.end()), in.changed.end());
+  for (const std::uint32_t i : in.changed) in.bodies[i].push = {};
+  ++in.tick;
+  return {};
+}
+
+tl::expected<void, Diagnostic> RigidWorld::Impl::step() {
   const auto broken = [&](std::uint32_t i) {
     return tl::unexpected(
-        Diagnostic{.error = fail(Errc::invalid_argument, "R-SIM-1").value(), .step = in.tick, .kind = "object", .element = i});
+        Diagnostic{.error = fail(Errc::invalid_argument, "R-SIM-1").value(), .step = tick, .kind = "object", .element = i});
   };
-  for (const std::uint32_t i : in.awake) {
-    const Body& body = in.bodies[i];
-    if (!can_step(in.motion_without_contact(body))) return broken(i);
-    dBodyAddForce(body.handle, body.force.x, body.force.y, body.force.z);
-    dBodyAddTorque(body.handle, body.torque.x, body.torque.y, body.torque.z);
-  }
-  if (in.resting_is_old) in.rebuild_resting();
-  in.find_pairs();
-  if (!in.find_contacts())
+  if (resting_is_old) rebuild_resting();
+  find_pairs();
+  if (!find_contacts())
     return tl::unexpected(Diagnostic{
-        .error = fail(Errc::limit_exceeded, "R-SIM-6").value(), .step = in.tick, .kind = "object", .element = in.awake.front()});
-  in.make_groups();
-  in.changed = in.awake;
-  for (const std::uint32_t i : in.awake) in.bodies[i].before = in.sample(in.bodies[i]);
-  in.step_groups();
-  for (const std::uint32_t i : in.awake) {
-    Body& body = in.bodies[i];
-    in.project(body);
-    in.stand_still(body);
+        .error = fail(Errc::limit_exceeded, "R-SIM-6").value(), .step = tick, .kind = "object", .element = awake.front()});
+  make_groups();
+  changed.insert(changed.end(), awake.begin(), awake.end());
+  share_pushes();
+  for (const std::uint32_t i : awake) {
+    if (!can_step(motion_without_contact(bodies[i]))) return broken(i);
+    begin(bodies[i]);
   }
-  if (in.tells_loads) in.tell_loads();
-  for (const std::uint32_t i : in.awake) {
-    Body& body = in.bodies[i];
-    body.force = body.torque = {};
-    const RigidSample s = in.sample(body);
+  step_groups();
+  for (const std::uint32_t i : awake) end(bodies[i]);
+  if (tells_loads) tell_loads();
+  for (const std::uint32_t i : awake) {
+    bodies[i].pushed = bodies[i].push;
+    const RigidSample s = sample(bodies[i]);
     if (!is_finite(s.pose.position) || !is_finite(s.pose.rotation) || !can_step({s.velocity, s.angular_velocity}))
       return broken(i);
   }
-  in.let_still_sleep();
-  if (in.ends_period()) in.let_piles_sleep();
-  ++in.tick;
+  let_still_sleep();
+  if (ends_period()) let_piles_sleep();
   return {};
 }
 
@@ -299,8 +231,10 @@ const RigidWorld::Load& RigidWorld::load(std::uint32_t object) const noexcept { 
 Vec3 RigidWorld::inertia(std::uint32_t object) const noexcept {
   const Body& body = impl_->bodies[object];
   if (body.handle == nullptr) return {};
-  return {1 / body.inverse_inertia.x.x, 1 / body.inverse_inertia.y.y, 1 / body.inverse_inertia.z.z};
+  return {1 / body.inertia.inverse.x.x, 1 / body.inertia.inverse.y.y, 1 / body.inertia.inverse.z.z};
 }
+
+const RigidErrors& RigidWorld::errors() const noexcept { return impl_->errors; }
 
 std::int64_t RigidWorld::tick() const noexcept { return impl_->tick; }
 

@@ -20,14 +20,21 @@
 #include <tactus/base/diagnostic.h>
 #include <tactus/base/geometry.h>
 #include <tactus/rigid/rigid_state.h>
+#include <tactus/sim/rigid/rigid_errors.h>
 #include <tactus/sim/scene/scene.h>
 
 namespace tactus::sim {
 
+/// What a step costs, and how exact it is.
+struct RigidEffort {
+  int parts = 1;         ///< of a tick, stepped one after the other
+  int iterations = 100;  ///< of the contact solver; ten times as many where they do not suffice
+};
+
 class RigidWorld {
  public:
   /// Uses only the scene's objects, floor and gravity.   pre  every call on the same thread
-  explicit RigidWorld(const Scene& scene);
+  explicit RigidWorld(const Scene& scene, const RigidEffort& effort = {});
 
   /// Add a force [N] at a world point to the next step. Along locked axes it only loads the object's supports.
   void push(std::uint32_t object, const Vec3& force, const Vec3& point) noexcept;
@@ -47,7 +54,8 @@ class RigidWorld {
   /// Objects whose states the last step may have changed, ascending; before the first step all.
   std::span<const std::uint32_t> changed() const noexcept;
 
-  /// State of an object now.   time O(1), no allocation.
+  /// State of an object now, its velocities those of half a step before: position minus step times velocity is where it was a step
+  /// before.   time O(1), no allocation
   RigidSample sample(std::uint32_t object) const noexcept;
   /// Forces on an object in the last step.
   struct Load {
@@ -55,6 +63,7 @@ class RigidWorld {
     Vec3 hold;      ///< along the normal of its contacts, as long as the sum of mu |f_n| [N]   spec/45-load.md 3
   };
   const Load& load(std::uint32_t object) const noexcept;  ///< zero unless tells_loads(scene)
+  const RigidErrors& errors() const noexcept;             ///< of all steps so far
   /// [kg m^2] Moments of inertia about the axes of an object's frame; zero: it is static.
   Vec3 inertia(std::uint32_t object) const noexcept;
   std::int64_t tick() const noexcept;

@@ -86,9 +86,22 @@ void read_surface(TomlReader& in, const toml::table& table, const std::filesyste
                "scale it: coordinates are metres, it is over 100 m long");
 }
 
+/// in  free  bits of the axes along or about which the object moves
+Vec3 read_motion(TomlReader& in, const toml::table& table, std::string_view key, Range range, unsigned free) {
+  const toml::node* node = table.get(key);
+  if (!node) return {};
+  const std::string path = TomlReader::join("object", key);
+  const auto [x, y, z] = in.numbers<3>(*node, path, range);
+  if ((x != 0 && !(free & 1)) || (y != 0 && !(free & 2)) || (z != 0 && !(free & 4)))
+    in.fail_at(node->source(), Errc::invalid, "R-SCN-6", path, "write 0 for axes that are not in dof");
+  return {x, y, z};
+}
+
 SceneObject read_object(TomlReader& in, const toml::table& table, const std::filesystem::path& folder) {
   const std::string path = "object";
-  in.allow(table, path, {"name", "size", "surface", "mass", "friction", "damping", "dof", "position", "rotation"});
+  in.allow(
+      table, path,
+      {"name", "size", "surface", "mass", "friction", "damping", "dof", "position", "rotation", "velocity", "angular_velocity"});
   SceneObject object;
   object.name = in.name(table, path);
   if (!table.contains("surface")) object.size = in.vector(table, path, "size", {1e-4, kFarthest});
@@ -98,6 +111,8 @@ SceneObject read_object(TomlReader& in, const toml::table& table, const std::fil
   object.damping = in.number(table, path, "damping", {0, 1}, 1.0);
   object.pose.position = in.vector(table, path, "position", kPlace);
   object.pose.rotation = read_rotation(in, table, path);
+  object.velocity = read_motion(in, table, "velocity", {-1000, 1000}, object.dof & 7u);
+  object.angular_velocity = read_motion(in, table, "angular_velocity", {-1000, 1000}, object.dof >> 3);
   if (table.contains("surface")) read_surface(in, table, folder, object);
   return object;
 }
@@ -135,6 +150,15 @@ SceneCompensation read_compensation(TomlReader& in, const toml::table& table) {
   SceneCompensation out;
   out.method = static_cast<CompensationMethod>(in.word(table, path, "method", {"stiffness", "simulation"}, "stiffness"));
   out.filter = in.number(table, path, "filter", {1e-6, 1}, out.filter);
+  return out;
+}
+
+SceneInterest read_interest(TomlReader& in, const toml::table& table) {
+  const std::string path = "interest";
+  in.allow(table, path, {"full", "reach"});
+  SceneInterest out;
+  out.full = in.number(table, path, "full", {1e-3, kFarthest});
+  out.reach = in.number(table, path, "reach", {std::max(1e-3, out.full), 4 * kFarthest});
   return out;
 }
 
@@ -208,13 +232,15 @@ void limit(TomlReader& in, const toml::table& root, std::string_view key, std::s
 }
 
 void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::path& folder, Scene& scene) {
-  in.allow(root, "", {"name", "gravity", "duration", "floor", "touch", "compensation", "object", "msd", "deformable", "user"});
+  in.allow(root, "",
+           {"name", "gravity", "duration", "floor", "touch", "compensation", "interest", "object", "msd", "deformable", "user"});
   scene.name = in.text(root, "", "name");
   scene.gravity = in.vector(root, "", "gravity", {-1000, 1000});
   scene.duration = in.number(root, "", "duration", {kTick, kLongest});
   if (root.contains("floor")) scene.floor = in.number(root, "", "floor", kPlace);
   if (const toml::table* touch = in.table(root, "", "touch")) scene.touch = read_touch(in, *touch);
   if (const toml::table* asked = in.table(root, "", "compensation")) scene.compensation = read_compensation(in, *asked);
+  if (const toml::table* asked = in.table(root, "", "interest")) scene.interest = read_interest(in, *asked);
 
   limit(in, root, "object", kMostObjects);
   limit(in, root, "msd", kMostObjects);

@@ -33,6 +33,8 @@ struct SceneObject {
   double damping = 1;           ///< d: velocities are multiplied by it every millisecond; 1: none
   std::uint8_t dof = Dof::all;  ///< none: a static object
   Pose pose;                    ///< at tick 0, of the centre of box or mass
+  Vec3 velocity;                ///< [m/s] at tick 0, of that centre
+  Vec3 angular_velocity;        ///< [rad/s] at tick 0, world frame
 };
 
 struct SceneMaterial {
@@ -138,6 +140,12 @@ struct SceneUser {
   }
 };
 
+/// How far away clients are told of rigid objects. spec/40-rigid.md section 1.1
+struct SceneInterest {
+  double full = 0;   ///< [m] in full up to here, with bounds twice as wide at twice the distance
+  double reach = 0;  ///< [m] not at all beyond
+};
+
 struct Scene {
   std::string name;
   std::string text;                               ///< the file itself, for the trace
@@ -146,6 +154,7 @@ struct Scene {
   std::optional<double> floor;                    ///< [m] height of a plane that carries the objects
   std::optional<SceneTouch> touch;                ///< set whenever there are users
   std::optional<SceneCompensation> compensation;  ///< none: loads are neither computed nor sent
+  std::optional<SceneInterest> interest;          ///< none: clients are told of all objects in full
   std::vector<SceneObject> objects;               ///< order of trace and stream
   std::vector<SceneMsd> msds;                     ///< in trace and stream after the objects, as objects of one degree of freedom
   std::vector<SceneDeformable> deformables;

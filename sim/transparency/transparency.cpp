@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/sim/transparency/transparency.h>
 
 #include <algorithm>
@@ -84,11 +85,11 @@ Result<std::vector<Hand>> hands_of(const Pressing& pressing) {
 
 double depth_of(const std::vector<Press>& presses, double time, double frequency) noexcept {
   const double quarter = 0.25 / frequency;
-  const auto sine = [&](double since) { return std::sin(2 * std::numbers::pi * frequency * since); };
+  const auto wave = [&](double since) { return sine(2 * std::numbers::pi * frequency * since); };
   for (const Press& press : presses) {
-    if (time >= press.begin && time < press.hold) return press.depth * sine(std::min(time - press.begin, quarter));
+    if (time >= press.begin && time < press.hold) return press.depth * wave(std::min(time - press.begin, quarter));
     if (time >= press.hold && time < press.end) return press.depth;
-    if (time >= press.end && time < press.end + quarter) return press.depth * sine(press.end + quarter - time);
+    if (time >= press.end && time < press.end + quarter) return press.depth * wave(press.end + quarter - time);
   }
   return kOutside;
 }
@@ -174,7 +175,7 @@ double reduced_stiffness(const SteadyPush& push, double stiffness, double round_
 }
 
 double blending(const Vec3& constraint, const Vec3& face) noexcept {
-  return 2 / std::numbers::pi * std::acos(std::min(std::abs(dot(constraint, face)), 1.0));
+  return 2 / std::numbers::pi * arc_cosine(std::min(std::abs(dot(constraint, face)), 1.0));
 }
 
 double reduced_stiffness(double resistive, double speed, double stiffness, double round_trip, double beta) noexcept {
@@ -208,7 +209,7 @@ Complex impedance(const DeformableCoupling& c, double omega, double round_trip, 
 /// |k_o + k_s - k_s e^(-j omega R)|^2, the yielding of object and delay together.
 double yielding(const DeformableCoupling& c, double stiffness, double omega, double round_trip) noexcept {
   const double sum = c.object_stiffness + stiffness;
-  return square(sum) - 2 * stiffness * sum * std::cos(omega * round_trip) + square(stiffness);
+  return square(sum) - 2 * stiffness * sum * cosine(omega * round_trip) + square(stiffness);
 }
 
 }  // namespace
@@ -238,10 +239,10 @@ Complex slow_client_impedance(const DeformableCoupling& coupling, double omega, 
 std::optional<double> tolerable_delay(const DeformableCoupling& coupling, double omega, double weber) noexcept {
   const double ratio = follows_slowly(coupling);
   const double stiffness = square(coupling.client_stiffness), damper = square(coupling.client_damping * omega);
-  const double cosine = ((1 + square(ratio)) * (stiffness + damper) - square((1 + weber) * (1 - ratio)) * stiffness) /
-                        (2 * ratio * (stiffness + damper));
-  if (!(std::abs(cosine) <= 1)) return std::nullopt;
-  return std::acos(cosine) / omega;
+  const double share = ((1 + square(ratio)) * (stiffness + damper) - square((1 + weber) * (1 - ratio)) * stiffness) /
+                       (2 * ratio * (stiffness + damper));
+  if (!(std::abs(share) <= 1)) return std::nullopt;
+  return arc_cosine(share) / omega;
 }
 
 double reduced_stiffness(const DeformableCoupling& coupling, double omega, double round_trip) noexcept {

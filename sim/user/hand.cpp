@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/sim/user/hand.h>
 
 #include <algorithm>
@@ -23,9 +24,11 @@ Vec3 only(const Vec3& v, std::uint8_t axes) {
   return {axes & Dof::x ? v.x : 0, axes & Dof::y ? v.y : 0, axes & Dof::z ? v.z : 0};
 }
 
+double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
+
 /// Unit vector along the horizontal part of v; world x if there is none.
 Vec3 horizontal(const Vec3& v) {
-  const double length = std::hypot(v.x, v.y);
+  const double length = length_of(v.x, v.y);
   return length > 1e-9 ? Vec3{v.x / length, v.y / length, 0} : Vec3{1, 0, 0};
 }
 
@@ -45,10 +48,10 @@ Vec3 facing_x(const Quat& rotation) {
 Tremor::Tremor(double rms, const HandImpedance& hand, Random& random) {
   const double position = rms * std::sqrt(2.0 / kSines);  // amplitude of each sine
   for (auto& axis : axes_) {
-    for (Sine& sine : axis) {
+    for (Sine& wave : axis) {
       const double w = 2 * std::numbers::pi * random.uniform(kTremorLow, kTremorHigh);
-      const double gain = std::hypot(hand.stiffness - hand.mass * w * w, hand.damping * w);  // force per displacement
-      sine = {w, random.uniform(0, 2 * std::numbers::pi), position * gain};
+      const double gain = length_of(hand.stiffness - hand.mass * w * w, hand.damping * w);  // force per displacement
+      wave = {w, random.uniform(0, 2 * std::numbers::pi), position * gain};
     }
   }
 }
@@ -56,7 +59,7 @@ Tremor::Tremor(double rms, const HandImpedance& hand, Random& random) {
 Vec3 Tremor::force(double time) const noexcept {
   std::array<double, 3> out{};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    for (const Sine& sine : axes_[axis]) out[axis] += sine.amplitude * std::sin(sine.frequency * time + sine.phase);
+    for (const Sine& wave : axes_[axis]) out[axis] += wave.amplitude * sine(wave.frequency * time + wave.phase);
   return {out[0], out[1], out[2]};
 }
 
@@ -85,19 +88,19 @@ Vec3 waypoint(PathFrame frame, const Vec3& to, const Pose& object, const Vec3& g
 
 Spiral::Spiral(const Vec3& from, const Vec3& to, const Vec3& centre, double turns)
     : centre_(centre),
-      radius_(std::hypot(from.x - centre.x, from.y - centre.y)),
+      radius_(length_of(from.x - centre.x, from.y - centre.y)),
       height_(from.z),
-      angle_(std::atan2(from.y - centre.y, from.x - centre.x)),
-      growth_(std::hypot(to.x - centre.x, to.y - centre.y) - radius_),
+      angle_(angle_of(from.y - centre.y, from.x - centre.x)),
+      growth_(length_of(to.x - centre.x, to.y - centre.y) - radius_),
       rise_(to.z - from.z) {
-  const double end = std::atan2(to.y - centre.y, to.x - centre.x);
+  const double end = angle_of(to.y - centre.y, to.x - centre.x);
   constexpr double kTurn = 2 * std::numbers::pi;
   sweep_ = kTurn * turns + std::remainder(end - angle_, kTurn);
 }
 
 Aim Spiral::at(double share) const noexcept {
   const double radius = radius_ + share * growth_, angle = angle_ + share * sweep_;
-  const Vec3 outward{std::cos(angle), std::sin(angle), 0}, onward{-outward.y, outward.x, 0};
+  const Vec3 outward{cosine(angle), sine(angle), 0}, onward{-outward.y, outward.x, 0};
   return {Vec3{centre_.x, centre_.y, height_ + share * rise_} + radius * outward,
           growth_ * outward + (radius * sweep_) * onward + Vec3{0, 0, rise_}};
 }

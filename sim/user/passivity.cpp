@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/sim/user/passivity.h>
 
 #include <algorithm>
@@ -47,7 +48,7 @@ struct Response {
 
 Response at(double w, const HandImpedance& hand, double samples) {
   const std::complex<double> step = 1.0 - std::polar(1.0, -w);
-  return {hand.mass * 2 * (std::cos(w) - 1) / (kTick * kTick) + hand.stiffness + hand.damping * step / kTick,
+  return {hand.mass * 2 * (cosine(w) - 1) / (kTick * kTick) + hand.stiffness + hand.damping * step / kTick,
           (1.0 - std::polar(1.0, -w * samples)) / (samples * step)};
 }
 
