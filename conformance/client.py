@@ -2,16 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """A client written from the specification alone: joins `tactus serve` over UDP and moves a device about.
 
-  client.py PORT [--seconds S] [--observe]    prints one line of JSON at the end: packets, round trip, hash of each substream's state;
-                                              in a driven scene also the paces of the device, and how many of its packets did not act
+  client.py PORT [--seconds S] [--observe] [--token FILE] [--seat N]
+      prints one line of JSON at the end: packets, epochs, round trip, hash of each substream's state; in a driven scene also the paces of the
+      device, and how many of its packets did not act
 
-It ends when the server leaves, or after S seconds.
+It ends when the server leaves, or after S seconds. Without an answer it joins again by itself, by its token, that --token also keeps for
+a program that begins anew.
 """
 from __future__ import annotations
 
 import argparse
 import json
 import math
+import pathlib
 import secrets
 import socket
 import sys
@@ -53,10 +56,12 @@ class Device:
         return encoder.finish()
 
 
-def run(port: int, seconds: float, observe: bool) -> Client:
+def run(port: int, seconds: float, observe: bool, kept: Optional[pathlib.Path] = None, seat: int = 0) -> tuple[Client, int]:
+    """The client and how many epochs it had."""
     sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     sock.connect(("127.0.0.1", port))
     device: Optional[Device] = None
+    epochs: list = []
 
     def next_packet(number: int) -> bytes:
         nonlocal device
@@ -64,7 +69,9 @@ def run(port: int, seconds: float, observe: bool) -> Client:
             device = Device(client.epoch.scene.position_exp, client.epoch.scene.tick_rate, time.monotonic())
         return device.packet(time.monotonic())
 
-    client = Client(secrets.randbits(64), None if observe else next_packet)
+    token = int(kept.read_text(encoding="ascii"), 16) if kept and kept.exists() else 0
+    client = Client(secrets.randbits(64), None if observe else next_packet, token)
+    client.seat = seat
     end = time.monotonic() + seconds
     while client.state != "closed" and time.monotonic() < end:
         for datagram in client.poll(time.monotonic_ns() // 1000):
@@ -74,10 +81,15 @@ def run(port: int, seconds: float, observe: bool) -> Client:
             client.handle(time.monotonic_ns() // 1000, sock.recv(2048))
         except (StreamError, TimeoutError, ConnectionRefusedError):
             pass                                            # dropped; nothing has come; nobody is there yet
+        if client.epoch and (not epochs or client.epoch is not epochs[-1]):
+            epochs.append(client.epoch)
+            device = None                                   # its ticks begin anew
+            if kept:
+                kept.write_text(f"{client.token:x}", encoding="ascii")
     client.leave()
     for datagram in client.poll(time.monotonic_ns() // 1000):
         sock.send(datagram)
-    return client
+    return client, len(epochs)
 
 
 def main() -> int:
@@ -85,12 +97,15 @@ def main() -> int:
     parser.add_argument("port", type=int)
     parser.add_argument("--seconds", type=float, default=1e9)
     parser.add_argument("--observe", action="store_true", help="look on, without a device")
+    parser.add_argument("--token", type=pathlib.Path, metavar="FILE", help="what lets this client come back after a crash")
+    parser.add_argument("--seat", type=int, default=0, help="of the scene's users, from 1; 0: any")
     arguments = parser.parse_args()
-    epoch = run(arguments.port, arguments.seconds, arguments.observe).epoch
+    client, epochs = run(arguments.port, arguments.seconds, arguments.observe, arguments.token, arguments.seat)
+    epoch = client.epoch
     if epoch is None or epoch.decoders is None:
         print("no session", file=sys.stderr)
         return 1
-    said = {"client": epoch.client, "packets": epoch.packets, "round_trip_us": epoch.round_trip,
+    said = {"client": epoch.client, "packets": epoch.packets, "epochs": epochs, "round_trip_us": epoch.round_trip,
             "state_hashes": [f"{d.state_hash():016x}" for d in epoch.decoders.substreams.values()]}
     if epoch.path:
         said.update({"paces": len(epoch.path.offsets), "without_effect": sum(not epoch.path.acts(n) for n in epoch.path.states)})

@@ -13,7 +13,7 @@ import zlib
 from case_text import CaseError, Element, Elements, Value, bytes_of, digits
 from conventions import Cursor, StreamError
 from deformable_header import CLUSTERS, COMPUTED, DECLARED, MAIN, THESIS, zigzag
-from scene import BOUNDS, HAS_BODIES, HAS_DEFORMABLES, HAS_LOADS, HAS_MOTION, IS_DRIVEN, MAGIC, STIFFNESS
+from scene import BOUNDS, HAS_BODIES, HAS_DEFORMABLES, HAS_INTEREST, HAS_LOADS, HAS_MOTION, IS_DRIVEN, MAGIC, STIFFNESS
 
 FIXED = struct.Struct("<4sBBHI")
 APART = ("magic", "version", "stream_profile", "body_size", "crc", "cut")
@@ -201,8 +201,12 @@ def elements_of_body(f, flags: int) -> None:
             several(f, "damping", "H", 1)
     if flags & HAS_BODIES:
         for _ in range(count):
-            if f.number("has_body", "B"):
-                elastic_body(f)
+            method = f.number("method", "B")
+            if method:
+                elastic_body(f, method)
+    if flags & HAS_INTEREST:
+        f.number("full", "I")
+        f.number("reach", "I")
     while f.more():
         f.extension(lambda content, kind: extension(content, kind, moving, vertices, bool(flags & HAS_LOADS)))
 
@@ -256,7 +260,9 @@ def runs(f) -> None:
         f.varint("more")
 
 
-def elastic_body(f) -> None:
+def elastic_body(f, method: int) -> None:
+    if method == 3:
+        f.number("sub_steps", "B")
     for name, count in (("mass_damping", 1), ("stiffness_damping", 1), ("gravity", 3), ("coupling", 1), ("friction", 1)):
         for _ in range(count):
             f.f64(name)

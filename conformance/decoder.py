@@ -68,6 +68,8 @@ def describe_declaration(scene: Declaration) -> dict:
     if any(d.body for d in scene.deformables):
         bodies = [(i, d.body) for i, d in enumerate(scene.deformables) if d.body]
         said["elastic"] = [[i, len(b.rest), len(b.tetrahedra), len(b.materials), len(b.fixed), b.work] for i, b in bodies]
+    if scene.interest:
+        said["interest"] = list(scene.interest)
     if scene.bounds:
         said["bounds"] = {**({"rigid": scene.bounds.rigid} if scene.bounds.rigid else {}), "meshes": scene.bounds.deformables,
                           **({"loads": scene.bounds.loads} if scene.bounds.loads else {})}

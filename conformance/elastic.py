@@ -21,6 +21,7 @@ class Shape(NamedTuple):
     """What is there when a frame begins."""
     u: list[float]
     w: list[float]
+    k: list[float]
     moves: bool
     proxy: Proxy
 
@@ -37,7 +38,7 @@ class Shapes:
         self.stepper = Stepper(self.body, self.ticks, scene.tick_rate)
         self.triangles_of = triangles_of_vertices(item)
         still = self.stepper.still
-        self.shapes = [Shape(still, still, any(self.body.gravity), Proxy())]  # from the frame on in which the body begins
+        self.shapes = [Shape(still, still, still, any(self.body.gravity), Proxy())]  # from the frame on in which the body begins
         self.ended = False
 
     def shape(self, n: int) -> Optional[Shape]:
@@ -60,9 +61,9 @@ class Shapes:
         if not pushes and not shape.moves:
             self.shapes.append(shape._replace(proxy=proxy))
             return
-        u, w = self.stepper.step(shape.u, shape.w, self.stepper.load(pushes))
+        u, w, k = self.stepper.step(shape.u, shape.w, shape.k, self.stepper.load(pushes))
         if all(abs(c) <= self.farthest for c in u):
-            self.shapes.append(Shape(u, w, bool(pushes) or any(abs(c) >= STILL for c in w), proxy))
+            self.shapes.append(Shape(u, w, k, bool(pushes) or any(abs(c) >= STILL for c in w), proxy))
         else:
             self.ended = True
 

@@ -12,6 +12,9 @@ from deformable_header import MAIN, DeformableObject, read_fixed, read_rest, rea
 from elastic_matrix import Order, edges, order_of, six_volumes, work
 
 MOST = 1e15
+MOST_POISSON = 0.4999
+BACKWARD_EULER, TR_BDF2, VELOCITY_VERLET = 1, 2, 3          # method
+STABILITY_STEPS = 24                                        # of the power method
 LONGEST_FRAME = 1 << 18                                     # 1/256 ticks
 MOST_VERTICES, MOST_TETRAHEDRA = 1 << 20, 1 << 21
 
@@ -34,6 +37,8 @@ class ElasticBody:
     tetrahedra: list[tuple] = field(default_factory=list)
     material_of: list[int] = field(default_factory=list)    # of each tetrahedron
     fixed: set = field(default_factory=set)
+    method: int = BACKWARD_EULER
+    sub_steps: int = 1                                      # of velocity Verlet
 
     @functools.cached_property
     def order(self) -> Order:
@@ -41,22 +46,27 @@ class ElasticBody:
 
     @functools.cached_property
     def work(self) -> int:
+        if self.method == VELOCITY_VERLET:
+            return 128 * (self.sub_steps + STABILITY_STEPS) * len(self.tetrahedra)
         return work(self.order)
 
 
 def read_elastic_bodies(body: Cursor, deformables: list[DeformableObject], position_exp: int) -> None:
     for item in deformables:
-        has_body = body.number(1, STR_5)
-        require(has_body <= 1, "malformed", "R-ELA-1")
-        if has_body:
+        method = body.number(1, STR_5)
+        require(method <= VELOCITY_VERLET, "malformed", "R-ELA-1")
+        if method:
             require(item.profile == MAIN and item.layered == 0, "invalid", "R-ELA-1")
             require(item.frame_period % 256 == 0 and item.frame_period <= LONGEST_FRAME, "invalid", "R-ELA-1")
-            item.body = read_elastic_body(body, item, position_exp)
+            item.body = read_elastic_body(body, method, item, position_exp)
     require(any(item.body for item in deformables), "invalid", "R-ELA-1")
 
 
-def read_elastic_body(body: Cursor, item: DeformableObject, position_exp: int) -> ElasticBody:
+def read_elastic_body(body: Cursor, method: int, item: DeformableObject, position_exp: int) -> ElasticBody:
+    sub_steps = body.number(1, STR_5) if method == VELOCITY_VERLET else 1
+    require(sub_steps >= 1, "invalid", "R-ELA-5")
     elastic = read_constants(body)
+    elastic.method, elastic.sub_steps = method, sub_steps
     inner_count = body.varint(STR_5, STR_5_VARINT)
     tet_count = body.varint(STR_5, STR_5_VARINT)
     count = len(item.rest) + inner_count
@@ -79,7 +89,7 @@ def read_constants(body: Cursor) -> ElasticBody:
     sound = all(0 <= c <= MOST for c in (mass_damping, stiffness_damping, friction)) and all(-MOST <= c <= MOST for c in gravity)
     require(sound and 0 < coupling <= MOST and material_count >= 1, "invalid", "R-ELA-2")
     for m in materials:
-        require(0 < m.young <= MOST and 0 < m.density <= MOST and -1 < m.poisson < 0.5, "invalid", "R-ELA-2")
+        require(0 < m.young <= MOST and 0 < m.density <= MOST and -1 < m.poisson <= MOST_POISSON, "invalid", "R-ELA-2")
     return ElasticBody(mass_damping, stiffness_damping, tuple(gravity), coupling, friction, materials)
 
 

@@ -28,6 +28,7 @@ class Proxy(NamedTuple):
     touches: bool = False
     triangle: Optional[int] = None
     weights: tuple = ()
+    last: Optional[tuple] = None                            # the device at the tick before
 
 
 class Surface:
@@ -102,15 +103,30 @@ class Surface:
         held = [set(self.triangles_of[c]) for c, weight in zip(self.triangles[q.triangle], q.weights) if weight != 0]
         return sorted(set.intersection(*held) - {q.triangle})
 
-    def hold(self, q: Foot, proxy: Proxy, friction: float) -> Foot:
-        point = self.point(proxy.triangle, proxy.weights)
-        lag = minus(point, q.point)
-        size = sqrt(dot(lag, lag))
-        rim = friction * sqrt(q.far)
+    def met(self, p: tuple, q: Foot, last: Optional[tuple]) -> Foot:
+        """Where the way of the device met the surface."""
+        if last is None:
+            return q
+        a, b, c = (self.s[v] for v in self.triangles[q.triangle])
+        n = cross(minus(b, a), minus(c, a))
+        over, under = dot(minus(last, a), n), dot(minus(p, a), n)
+        if not over > 0:
+            return q
+        share = quotient(over, over - under)
+        return self.descend(tuple(x + share * (y - x) for x, y in zip(last, p)), q.triangle)
+
+    def hold(self, p: tuple, proxy: Proxy, friction: float) -> Foot:
+        a, b, c = (self.s[v] for v in self.triangles[proxy.triangle])
+        held = self.point(proxy.triangle, proxy.weights)
+        n = cross(minus(b, a), minus(c, a))
+        deep = quotient(dot(minus(p, held), n), dot(n, n))
+        base = tuple(p[i] - deep * n[i] for i in AXES)
+        lag, down = minus(held, base), minus(p, base)
+        size, rim = sqrt(dot(lag, lag)), friction * sqrt(dot(down, down))
         if size <= rim:
-            return Foot(proxy.triangle, proxy.weights, point, q.far)
+            return Foot(proxy.triangle, proxy.weights, held, 0.0)
         share = quotient(rim, size)
-        return self.descend(tuple(q.point[i] + share * lag[i] for i in AXES), q.triangle)
+        return self.descend(tuple(base[i] + share * lag[i] for i in AXES), proxy.triangle)
 
     def touch(self, p: tuple, proxy: Proxy, first_tick: bool, coupling: float, friction: float) -> tuple[Proxy, Optional[Push]]:
         """`p` is where the device is; `first_tick`: of its frame."""
@@ -121,9 +137,12 @@ class Surface:
         if first_tick and proxy.triangle is not None and not proxy.touches and not touches:
             q = self.descend(p, self.nearest(p))
             touches = self.inside(p, q)
-        if proxy.touches and touches and friction > 0:
-            q = self.hold(q, proxy, friction)
-        proxy = Proxy(touches, q.triangle, q.weights)
+        if touches and friction > 0:
+            if not proxy.touches:
+                first = self.met(p, q, proxy.last)
+                proxy = proxy._replace(triangle=first.triangle, weights=first.weights)
+            q = self.hold(p, proxy, friction)
+        proxy = Proxy(touches, q.triangle, q.weights, p)
         if not touches:
             return proxy, None
         force = tuple(coupling * c for c in minus(p, q.point))

@@ -22,7 +22,7 @@ from start_models import Models
 NAMES: dict = {}                                            # by identity of a model: the model, its name
 ELEMENTS = {                                                # models, and the element of the specification that they code
     "KEY": "key", "BASELINE": "baseline_delta", "TICK": "tick_delta", "COUNT": "count", "GAP": "gap", "REASON": "reason",
-    "LEVEL": "level", "EASE": "ease", "KEEP": "keep", "PREDICTOR": "predictor", "CONTACT": "component of contact", "LAYER": "layer", "SAME_FRAME": "same_frame",
+    "LEVEL": "level", "LOD": "lod less that of the baseline", "EASE": "ease", "KEEP": "keep", "PREDICTOR": "predictor", "CONTACT": "component of contact", "LAYER": "layer", "SAME_FRAME": "same_frame",
     "LATE": "late",
     "TOUCHED": "touched", "SAME_TRIANGLE": "same triangle", "NEAR_TRIANGLE": "near triangle", "NEAR_PLACE": "entry of near",
     "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density", "WEIGHT_SET": "weight_set", "DRIVEN": "driven", "FADES": "fades",
@@ -166,7 +166,8 @@ def tell_rigid(packet, scene):
                 f"{vector(state.angular_velocity)} |"]
         predictor = f", predictor {state.predictor}" if scene.motion or scene.driven else ""
         easing = f", ease {state.ease}, keep {state.keep}" if scene.eased else ""
-        print(f"Object {update.object}, reason {update.reason}, level {update.level}{predictor}{easing}:\n")
+        lod = f", lod {state.lod}" if scene.interest else ""
+        print(f"Object {update.object}, reason {update.reason}, level {update.level}{lod}{predictor}{easing}:\n")
         table("| position | rotation | velocity | angular velocity", rows)
         if state.predictor == rigid.DRIVEN:
             held, point, normal, drag = state.contact
@@ -351,8 +352,11 @@ def tell_declaration(file, data):
             f.number(f"{name} of object {i}", form)
     if any(item.body for item in file.declaration.deformables):
         for item in file.declaration.deformables:
-            if f.number("has_body", "B"):
+            if f.number("method", "B"):
                 tell_elastic(f, item)
+    if file.declaration.interest:
+        f.number("full", "I")
+        f.number("reach", "I")
     if f.cursor.position < end - 4:
         f.take("extension records", end - 4 - f.cursor.position)
     f.number("crc", "I")

@@ -9,7 +9,7 @@ from conventions import FNV_START, fnv1a, round_div
 from curve import NO_OFFSET, Offset, cubic, difference, displaced, offset
 from easing import eased, kept
 from rigid import Packet, motion, predict
-from scene import Declaration, State
+from scene import OUT_OF_INTEREST, Declaration, State
 
 MOST_EASED = 64
 HEARD = 1024
@@ -55,7 +55,7 @@ class Playout:
     def between(self, known: list[KnownUpdate], k: int, s: int) -> tuple[tuple, tuple]:
         """The way from update k to the next one."""
         a, after = known[k], known[k + 1:k + 2]
-        if not after or a.number == 0 or not 0 < after[0].tick - a.tick <= self.reach:
+        if not after or a.number == 0 or a.state.lod == OUT_OF_INTEREST or not 0 < after[0].tick - a.tick <= self.reach:
             return predict(self.scene, a.state, s)
         if all(number in self.heard for number in range(a.number + 1, after[0].number)):
             return predict(self.scene, a.state, s)

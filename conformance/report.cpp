@@ -120,7 +120,7 @@ void write_elastic(const std::vector<DeformableObject>& deformables, std::ostrea
     const ElasticBody& body = *deformables[i].body;
     const std::size_t vertices = deformables[i].rest.size() + body.inner.size();
     out << comma << '[' << i << ',' << vertices << ',' << body.tets.size() << ',' << body.materials.size() << ','
-        << body.fixed.size() << ',' << elastic_work(elimination(body, vertices)) << ']';
+        << body.fixed.size() << ',' << elastic_work(body, vertices) << ']';
     comma = ",";
   }
   out << ']';
@@ -144,6 +144,7 @@ void write_header_line(const Scene& h, std::ostream& out) {
   }
   if (h.driven) write_driven(h, out);
   if (has_elastic_body(h.deformables)) write_elastic(h.deformables, out);
+  if (h.interest) out << R"(,"interest":[)" << h.interest->full << ',' << h.interest->reach << ']';
   if (h.bounds) write_bounds(*h.bounds, out);
   out << "}}\n";
 }
@@ -201,7 +202,7 @@ class Client {
     if (packet.tick != record.tick) return fail(Errc::invalid, "R-FIL-7");
     const std::uint32_t first = scene_->moving().empty() ? 0 : scene_->moving()[0];
     for (const RigidUpdate& update : packet.updates)
-      if (path_ && update.object == first) path_->add(packet.number, receiver_.objects_after(packet)[first]);
+      if (path_ && update.object == first) path_->add(packet.number, receiver_.object_after(packet, first));
     out << R"({"packet":)" << number << ',';
     if (has_substream_number(*scene_)) out << R"("part":)" << packet.substream << ',';
     write_packet(packet, receiver_.state_hash(packet.substream), out);

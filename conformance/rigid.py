@@ -207,6 +207,7 @@ class RigidDecoder:
         """Replaces the baseline's state of an object in `moment` by its new state."""
         reason = decoder.tree(models["REASON"], 2)
         level = decoder.tree(models["LEVEL"], 4)
+        lod = (moment.states[index].lod + decoder.tree(models["LOD"], 3)) % 8 if self.scene.interest else 0
         ease = 0
         if self.scene.eased:
             usual = max(0, min(self.scene.tick_rate // 62, 255).bit_length() - 1)
@@ -222,7 +223,7 @@ class RigidDecoder:
         base, s = moment.states[index], level
         position, rotation = reconstruct_pose(self.scene, base, moment.tick, r, s)
         velocity, angular = reconstruct_motion(self.scene, base, moment.tick, r, s, reason)
-        moment.states[index] = State(moment.tick, position, rotation, velocity, angular, predictor, ease, keep, contact)
+        moment.states[index] = State(moment.tick, position, rotation, velocity, angular, predictor, ease, keep, contact, lod)
         return Update(index, reason, level)
 
     def declares(self, predictor: int, index: int) -> bool:
@@ -240,7 +241,7 @@ class RigidDecoder:
         states = self.receiver.current.states
         h = FNV_START
         for i in self.moving:
-            tick, *vectors, predictor, ease, keep, (held, point, normal, drag) = states[i]
+            tick, *vectors, predictor, ease, keep, (held, point, normal, drag), lod = states[i]
             h = fnv1a(struct.pack("<Q13i", tick, *(c for vector in vectors for c in vector)), h)
             if self.scene.eased:
                 h = fnv1a(struct.pack("<I", ease + 8 * keep), h)
@@ -248,4 +249,6 @@ class RigidDecoder:
                 h = fnv1a(struct.pack("<i", predictor), h)
             if self.scene.driven:
                 h = fnv1a(struct.pack("<8i", held, *point, *normal, drag), h)
+            if self.scene.interest:
+                h = fnv1a(struct.pack("<i", lod), h)
         return h

@@ -12,6 +12,7 @@ import deformable_clusters
 from conventions import ONE, STR_5, STR_5_VARINT, Cursor, require, text
 from deformable_header import THESIS, DeformableObject, read_deformable_objects
 from elastic_header import read_elastic_bodies
+from elastic_step import is_stable
 
 
 class Limits(NamedTuple):
@@ -28,7 +29,7 @@ class Limits(NamedTuple):
 
 MAGIC = b"\x89TCT"
 SMALLEST_OBJECT = 32
-HAS_DEFORMABLES, HAS_LOADS, IS_EASED, HAS_MOTION, IS_DRIVEN, HAS_BODIES = 1, 2, 4, 8, 16, 32               # bits 0 to 5 of `flags`
+HAS_DEFORMABLES, HAS_LOADS, IS_EASED, HAS_MOTION, IS_DRIVEN, HAS_BODIES, HAS_INTEREST = (1 << bit for bit in range(7))   # of `flags`
 
 
 class Contact(NamedTuple):                                  # chapter 40, section 4.1
@@ -48,6 +49,7 @@ class State(NamedTuple):                                    # chapter 40
     ease: int = 0
     keep: int = 0
     contact: Contact = Contact()
+    lod: int = 0                                            # section 1.1
 
 
 class Object(NamedTuple):
@@ -74,6 +76,14 @@ class DrivenConstants(NamedTuple):                          # chapter 40, sectio
     damping: int                                            # x 2^-20
 
 
+OUT_OF_INTEREST = 7
+
+
+class Interest(NamedTuple):                                 # chapter 40, section 1.1, x 2^-position_exp m
+    full: int
+    reach: int
+
+
 class Bounds(NamedTuple):
     """Elements of the bounds record in the order in which they are read, f64 as the hexadecimal digits of their bits."""
     rigid: Optional[list]
@@ -98,6 +108,7 @@ class Declaration:
     loads: Optional[LoadDeclaration] = None
     motion: Optional[MotionConstants] = None
     driven: dict[int, DrivenConstants] = field(default_factory=dict)         # of all moving objects, if the scene is driven
+    interest: Optional[Interest] = None
     bounds: Optional[Bounds] = None
 
     def moving(self) -> list[int]:
@@ -122,7 +133,7 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(version == 1, "unsupported", "R-STR-2")
     require(profile <= 1, "malformed", "R-STR-3")
     require(profile == 0, "unsupported", "R-STR-3")
-    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_EASED + HAS_MOTION + IS_DRIVEN + HAS_BODIES, "malformed", "R-STR-4")
+    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_EASED + HAS_MOTION + IS_DRIVEN + HAS_BODIES + HAS_INTEREST, "malformed", "R-STR-4")
     require(body_size <= limits.body_size, "limit_exceeded", "R-STR-14")
     end = 12 + body_size
     require(len(data) >= end + 4, *STR_5)
@@ -149,6 +160,10 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
         require(sound and any(item.coupling for item in scene.driven.values()), "invalid", "R-STR-23")
     if flags & HAS_BODIES:
         read_elastic_bodies(body, scene.deformables, scene.position_exp)
+    if flags & HAS_INTEREST:
+        scene.interest = Interest(*struct.unpack("<2I", body.take(8, STR_5)))
+        require(scene.moving() and 1 <= scene.interest.full <= scene.interest.reach < 1 << 31, "invalid", "R-STR-25")
+        scene.objects = [o._replace(initial=o.initial._replace(lod=OUT_OF_INTEREST)) for o in scene.objects]
     while body.left() > 0:
         kind = body.varint(STR_16, STR_16)
         content = body.take(body.varint(STR_16, STR_16), STR_16)
@@ -164,6 +179,9 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(work <= limits.basis_work, "limit_exceeded", "R-STR-21")
     work = sum(item.body.work for item in scene.deformables if item.body)
     require(work <= limits.body_work, "limit_exceeded", "R-STR-24")
+    for item in scene.deformables:
+        if item.body:
+            require(is_stable(item.body, item.frame_period // 256, scene.tick_rate), "invalid", "R-ELA-5")
     for item in scene.deformables:
         if item.fixed is not None:
             item.modes = deformable_basis.computed_modes(item)

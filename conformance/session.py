@@ -26,7 +26,7 @@ PREVIOUS, ACKNOWLEDGED = 0, 1                               # policies of baseli
 MOST_HELD, BYTES_HELD = 1024, 1 << 16
 LARGEST_DATAGRAM = 1200
 MOST_UNTOLD = 32                                            # numbers that are accepted until an acknowledgement is due at once
-PIECE_SIZE, WINDOW = 1024, 64
+PIECE_SIZE, WINDOW, WINDOW_PER_PIECE, LARGEST_WINDOW = 1024, 64, 16, 1024
 FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 4
 MS = 1000                                                   # us
 BYE, WRONG_VERSION, FULL, TOO_LARGE, SILENCE, NO_SCENE, LAST_REASON = 0, 1, 2, 3, 4, 5, 6
@@ -88,7 +88,9 @@ def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
         out = (e.number(1, CUT),)
     elif kind == REPORT and direction == UP:
         out = e.varint(CUT, SPARE), e.number(1, CUT)
-        require(out[1] <= 1, *SPARE)
+        require(out[1] <= 3, *SPARE)
+        if out[1] & 2:
+            out += tuple(e.number(4, CUT) for _ in range(3))      # the place, as unsigned numbers: nobody looks here
     elif kind == HASH:
         out = e.number(1, CUT), e.number(2, CUT), e.number(4, CUT)
     else:
@@ -238,7 +240,8 @@ class Epoch:
 
     def take_piece(self, index: int, data: bytes) -> None:
         front = next(i for i in range(self.size // PIECE_SIZE + 2) if i not in self.pieces)
-        inside = index * PIECE_SIZE < self.size and index < front + WINDOW
+        window = min(WINDOW + WINDOW_PER_PIECE * len(self.pieces), LARGEST_WINDOW)
+        inside = index * PIECE_SIZE < self.size and index < front + window
         require(inside and len(data) == min(PIECE_SIZE, self.size - index * PIECE_SIZE), "invalid", "R-SES-8")
         self.pieces[index] = data
 
@@ -369,7 +372,7 @@ class Client:
         self.leaving = b""
         self.epoch: Optional[Epoch] = None
         self.token, self.seat = token, 0
-        self.retry_at, self.retry = 0, 250 * MS
+        self.retry_at, self.retry = 0, 100 * MS
         self.rejoins = False                                # in this silence
         self.sign_at = self.device_at = 0
         self.first_live: Optional[int] = None               # number of the first datagram that said so
@@ -430,7 +433,7 @@ class Client:
         if now >= self.join_at():
             if self.state != "joining" and not self.rejoins:
                 self.rejoins, self.retry = True, 250 * MS
-            self.retry_at, self.retry = now + self.retry, min(2 * self.retry, 2000 * MS)
+            self.retry_at, self.retry = now + self.retry, min((3 if self.state == "joining" else 4) * self.retry // 2, 2000 * MS)
             body = head(HANDSHAKE, JOIN) + b"TCTS" + struct.pack("<BBQQB", 1, 1 if self.device else 0, self.nonce, self.token, self.seat)
             yield sealed((body + varint(STATE_LIMIT) + varint(HEADER_LIMIT)).ljust(76, b"\0"), 0)
         if self.state not in ("receiving", "live"):

@@ -43,6 +43,7 @@ FLAGS = {
     "motion": "the scene has motion constants",
     "driven": "the scene is driven",
     "elastic": "a deformable object has an elastic body",
+    "interest": "the scene has interest",
     "basis": "a deformable object has modes that are declared",
     "computed_basis": "a deformable object has modes that both ends compute",
     "layered": "a deformable object has haptic and visual layers",

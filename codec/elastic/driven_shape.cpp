@@ -16,7 +16,7 @@ constexpr std::int64_t kFarthest = 64;  // shapes behind: a client that was away
 /// Long enough for what is learnt of the past within a round trip, within 32 MB.
 std::size_t ring_size(std::size_t vertices) noexcept {
   constexpr std::size_t kMost = 32, kLeast = 4, kNumbers = std::size_t{1} << 22;
-  return std::clamp(kNumbers / (6 * vertices), kLeast, kMost);
+  return std::clamp(kNumbers / (9 * vertices), kLeast, kMost);
 }
 
 constexpr std::int64_t kAll = std::int64_t{1} << 16;
@@ -34,17 +34,11 @@ DrivenShape::DrivenShape(const Scene& scene, const DeformableObject& object, con
     : path_(path),
       solver_(scene, object),
       touch_(object),
-      frames_(ring_size(solver_.vertices())),
+      frames_(ring_size(solver_.vertices()), Frame(solver_)),
       surface_(object.rest.size()),
       load_(3 * solver_.vertices()),
       from_(object.rest.size()),
-      shape_(object.rest.size()) {
-  for (Frame& frame : frames_) {
-    frame.state.displacement.resize(load_.size());
-    frame.state.velocity.resize(load_.size());
-    frame.places.resize(solver_.ticks());
-  }
-}
+      shape_(object.rest.size()) {}
 
 /// At rest.
 void DrivenShape::begin(std::int64_t number) noexcept {
@@ -52,6 +46,7 @@ void DrivenShape::begin(std::int64_t number) noexcept {
   Frame& start = frame(number);
   std::ranges::fill(start.state.displacement, 0);
   std::ranges::fill(start.state.velocity, 0);
+  std::ranges::fill(start.state.force, 0);
   start.moves = solver_.has_weight();
   start.touch = {};
   is_broken_ = false;
@@ -104,8 +99,7 @@ void DrivenShape::step() noexcept {
   const bool pushed = push();
   const Frame& now = frame(newest_);
   Frame& next = frame(newest_ + 1);
-  std::ranges::copy(now.state.displacement, next.state.displacement.begin());
-  std::ranges::copy(now.state.velocity, next.state.velocity.begin());
+  next.state = now.state;  // as long: nothing is allocated
   next.moves = false;
   if (pushed || now.moves) {
     is_broken_ = !solver_.step(load_, next.state);

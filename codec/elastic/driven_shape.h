@@ -34,6 +34,7 @@ class DrivenShape final : public FollowedShape {
   using Place = std::optional<Vec3i>;
   /// A shape, and what the device did while it was there.
   struct Frame {
+    explicit Frame(const ElasticSolver& solver) : state(solver.vertices()), places(solver.ticks()) {}
     ElasticState state;
     bool moves = false;  // by itself
     ElasticTouch::State touch;

@@ -100,15 +100,27 @@ bool ElasticTouch::is_inside(const Vec3& place, const Foot& foot, std::span<cons
   return dot(place - foot.point, cross(vertices[b] - vertices[a], vertices[c] - vertices[a])) < 0;
 }
 
-/// Where friction holds the proxy, given where it would be without.
-ElasticTouch::Foot ElasticTouch::hold(const Foot& goal, std::span<const Vec3> vertices, const State& state) const noexcept {
-  const Triangle& corners = object_.triangles[*state.triangle];
-  Foot held{.triangle = *state.triangle, .weights = state.weights, .point = {}};
-  held.point = blend(held.weights, vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]);
-  const Vec3 lag = held.point - goal.point;
-  const double far = norm(lag), rim = object_.body->friction * std::sqrt(goal.distance2);
+/// Where the way of the device met the surface, given its foot after.
+ElasticTouch::Foot ElasticTouch::met(const Vec3& place, const Foot& foot, std::span<const Vec3> vertices,
+                                     const State& state) const noexcept {
+  if (!state.last) return foot;
+  const auto& [i, j, k] = object_.triangles[foot.triangle];
+  const Vec3 n = cross(vertices[j] - vertices[i], vertices[k] - vertices[i]);
+  const double over = dot(*state.last - vertices[i], n), under = dot(place - vertices[i], n);
+  if (!(over > 0)) return foot;
+  return descend(*state.last + (over / (over - under)) * (place - *state.last), foot.triangle, vertices);
+}
+
+/// Where friction holds the proxy: Coulomb's cone over the plane of the triangle that held it.
+ElasticTouch::Foot ElasticTouch::hold(const Vec3& place, std::span<const Vec3> vertices, const State& state) const noexcept {
+  const auto& [i, j, k] = object_.triangles[*state.triangle];
+  const Vec3 &a = vertices[i], &b = vertices[j], &c = vertices[k];
+  const Foot held{.triangle = *state.triangle, .weights = state.weights, .point = blend(state.weights, a, b, c)};
+  const Vec3 n = cross(b - a, c - a), base = place - (dot(place - held.point, n) / dot(n, n)) * n;
+  const Vec3 lag = held.point - base;
+  const double far = norm(lag), rim = object_.body->friction * norm(place - base);
   if (far <= rim) return held;
-  return descend(goal.point + (rim / far) * lag, goal.triangle, vertices);
+  return descend(base + (rim / far) * lag, held.triangle, vertices);
 }
 
 std::optional<ElasticTouch::Push> ElasticTouch::move(const Vec3& place, bool anew, std::span<const Vec3> vertices,
@@ -121,9 +133,17 @@ std::optional<ElasticTouch::Push> ElasticTouch::move(const Vec3& place, bool ane
     at = descend(place, nearest(place, vertices).triangle, vertices);
     state.touches = is_inside(place, at, vertices);
   }
-  if (touched && state.touches && object_.body->friction > 0) at = hold(at, vertices, state);
+  if (state.touches && object_.body->friction > 0) {
+    if (!touched) {
+      const Foot first = met(place, at, vertices, state);
+      state.triangle = first.triangle;
+      state.weights = first.weights;
+    }
+    at = hold(place, vertices, state);
+  }
   state.triangle = at.triangle;
   state.weights = at.weights;
+  state.last = place;
   if (!state.touches) return std::nullopt;
   return Push{at.triangle, at.weights, object_.body->coupling * (place - at.point)};
 }

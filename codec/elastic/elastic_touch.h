@@ -23,6 +23,7 @@ class ElasticTouch {
     bool touches = false;
     std::optional<std::uint32_t> triangle;
     std::array<double, 3> weights{};  ///< of its corners
+    std::optional<Vec3> last;         ///< [m] the device at the tick before
     friend bool operator==(const State&, const State&) = default;
   };
   /// A push on the body.
@@ -53,7 +54,8 @@ class ElasticTouch {
   Foot descend(const Vec3& place, std::uint32_t triangle, std::span<const Vec3> vertices) const noexcept;
   bool meets(std::uint32_t triangle, const Foot& foot) const noexcept;
   bool is_inside(const Vec3& place, const Foot& foot, std::span<const Vec3> vertices) const noexcept;
-  Foot hold(const Foot& goal, std::span<const Vec3> vertices, const State& state) const noexcept;
+  Foot met(const Vec3& place, const Foot& foot, std::span<const Vec3> vertices, const State& state) const noexcept;
+  Foot hold(const Vec3& place, std::span<const Vec3> vertices, const State& state) const noexcept;
 
   const DeformableObject& object_;
   ListOfLists<std::uint32_t> triangles_of_;  // by vertex, ascending
