@@ -79,7 +79,7 @@ Result<DecodedPacket> Receiver::Impl::push(std::optional<std::uint64_t> number, 
     const Error& error = decoded.error();
     return fail_at(error, error.bit_offset + 8 * (packet.size() - part.bytes.size()));
   }
-  if (part.substream == 0) replica.apply(*decoded, rigid.after(*decoded).objects, now.value_or(decoded->tick));
+  if (part.substream == 0) replica.apply(*decoded, rigid.after(*decoded), now.value_or(decoded->tick));
   return decoded;
 }
 
@@ -104,10 +104,10 @@ void Receiver::know(std::shared_ptr<const DevicePath> path) {
 
 Replica& Receiver::replica() noexcept { return impl_->replica; }
 const SharedScene& Receiver::scene() const noexcept { return impl_->scene; }
-std::span<const RigidState> Receiver::objects_after(const DecodedPacket& packet) const noexcept {
-  return impl_->rigid.after(packet).objects;
+const RigidState& Receiver::object_after(const DecodedPacket& packet, std::uint32_t object) const noexcept {
+  return impl_->rigid.after(packet).objects[object];
 }
-std::span<const RigidState> Receiver::objects() const noexcept { return impl_->rigid.newest().objects; }
+const RigidState& Receiver::object(std::uint32_t object) const noexcept { return impl_->rigid.newest().objects[object]; }
 
 std::span<const std::array<std::int32_t, 3>> Receiver::displacements(std::size_t object) const noexcept {
   return impl_->deformables[object]->displacements();

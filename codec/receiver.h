@@ -71,10 +71,10 @@ class Receiver {
   Replica& replica() noexcept;
 
   const SharedScene& scene() const noexcept;
-  /// State of every rigid object after a packet of them.   pre  push() or push_numbered() has just returned it
-  std::span<const RigidState> objects_after(const DecodedPacket& packet) const noexcept;
-  /// Newest state of every rigid object, scene order.
-  std::span<const RigidState> objects() const noexcept;
+  /// State of a rigid object after a packet of them.   pre  push() or push_numbered() has just returned it
+  const RigidState& object_after(const DecodedPacket& packet, std::uint32_t object) const noexcept;
+  /// Newest state of a rigid object, by its place in the scene.
+  const RigidState& object(std::uint32_t object) const noexcept;
   /// Newest decoded displacements of a deformable object, V x 3, x 2^-position_exp m.   pre  object < scene.deformables.size()
   std::span<const std::array<std::int32_t, 3>> displacements(std::size_t object) const noexcept;
   /// Vectors of a rigid object's load (kExternal, kHold, kPushes ..) at a tick that is shown, x 2^-force_exp N: of the newest state held

@@ -2,6 +2,7 @@
 #include <tactus/sender.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,11 +14,25 @@
 
 namespace tactus {
 
+struct SharedTruth::Impl {
+  Impl(const Scene& of, const RigidTriggers& triggers) : scene(of), rigid(of, triggers) {}
+  Result<void> read(std::int64_t tick, const Truth& truth) noexcept {
+    if (scene.moving().empty() && truth.objects.empty() && truth.contacts.empty()) return {};
+    return rigid.read(tick, truth.objects, truth.contacts, truth.moved);
+  }
+  const Scene& scene;
+  SharedScene held;  // where it is shared
+  RigidTruth rigid;
+  std::optional<RigidWork> work;  // where it is shared
+};
+
 struct Sender::Impl {
-  Impl(SharedScene of, const SenderOptions& options)
+  Impl(SharedScene of, const SenderOptions& options, std::shared_ptr<SharedTruth> of_others)
       : scene(std::move(of)),
+        shared(std::move(of_others)),
+        own(shared ? nullptr : std::make_unique<SharedTruth::Impl>(*scene, options.triggers)),
         rigid(*scene, with(options.policy, Baseline::previous), 0, max_rigid_packet(*scene), 1, initial_states(*scene), *scene,
-              options.triggers, with(options.policy, Baseline::previous).baseline) {
+              options.triggers, options.policy, truth().rigid, truth().work ? &*truth().work : nullptr) {
     const SenderPolicy policy = with(options.policy, Baseline::acknowledged);
     for (std::size_t i = 0; i < scene->deformables.size(); ++i)
       deformables.push_back(DeformableEncoder::create(*scene, i, options.deformable, policy));
@@ -27,6 +42,7 @@ struct Sender::Impl {
     packets.reserve(2 + 2 * deformables.size());
   }
 
+  SharedTruth::Impl& truth() noexcept { return own ? *own : *shared->impl_; }
   /// What Baseline::repaired means for these objects.
   static SenderPolicy with(SenderPolicy policy, Baseline repaired) noexcept {
     if (policy.baseline == Baseline::repaired) policy.baseline = repaired;
@@ -39,6 +55,8 @@ struct Sender::Impl {
   }
 
   SharedScene scene;
+  std::shared_ptr<SharedTruth> shared;
+  std::unique_ptr<SharedTruth::Impl> own;  // where it is not shared
   std::shared_ptr<const DevicePath> path;
   SubstreamEncoder<RigidEncoder> rigid;
   std::vector<std::unique_ptr<DeformableEncoder>> deformables;
@@ -52,8 +70,8 @@ Result<void> Sender::Impl::read(std::int64_t tick, const Truth& truth) noexcept 
   if (tick <= last_tick || tick >= kTickLimit) return fail(Errc::invalid_argument, "R-API-5");
   if (!truth.deformables.empty() && truth.deformables.size() != deformables.size())
     return fail(Errc::invalid_argument, "R-API-5");
-  if (!scene->moving().empty() || !truth.objects.empty() || !truth.contacts.empty())
-    TACTUS_CHECK(rigid.codec().read(tick, truth.objects, truth.contacts));
+  if (shared && !scene->moving().empty() && shared->impl_->rigid.tick() != tick) return fail(Errc::invalid_argument, "R-API-5");
+  if (own) TACTUS_CHECK(own->read(tick, truth));
   for (std::size_t i = 0; i < truth.deformables.size(); ++i)
     if (!truth.deformables[i].displacements.empty()) TACTUS_CHECK(deformables[i]->read(truth.deformables[i]));
   if (loads) return loads->codec().read(tick, truth.loads);
@@ -91,15 +109,39 @@ Sender::Sender(Sender&&) noexcept = default;
 Sender& Sender::operator=(Sender&&) noexcept = default;
 Sender::~Sender() = default;
 
-Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options) try {
-  const double interval = options.policy.key_interval;
-  if (!(interval >= 0 && interval <= 86400)) return fail(Errc::invalid_argument, "R-API-4");
-  if (!scene->moving().empty()) TACTUS_CHECK(RigidEncoder::check(options.triggers, scene->grid));
-  if (!scene->deformables.empty()) TACTUS_CHECK(DeformableEncoder::check(options.deformable));
-  if (scene->loads) TACTUS_CHECK(LoadEncoder::check(options.load));
-  SenderOptions used = options;
-  if (scene->moving().empty()) used.triggers = {};  // they may be anything
-  return Sender(std::make_unique<Impl>(std::move(scene), used));
+/// What options must be, and those that count.
+static Result<SenderOptions> checked(const Scene& scene, SenderOptions options) {
+  for (const double interval : {options.policy.key_interval, options.policy.silence})
+    if (!(interval >= 0 && interval <= 86400)) return fail(Errc::invalid_argument, "R-API-4");
+  if (!scene.moving().empty()) TACTUS_CHECK(RigidEncoder::check(options.triggers, scene.grid));
+  if (!scene.deformables.empty()) TACTUS_CHECK(DeformableEncoder::check(options.deformable));
+  if (scene.loads) TACTUS_CHECK(LoadEncoder::check(options.load));
+  if (scene.moving().empty()) options.triggers = {};  // they may be anything
+  return options;
+}
+
+SharedTruth::SharedTruth(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+SharedTruth::~SharedTruth() = default;
+
+Result<std::shared_ptr<SharedTruth>> SharedTruth::create(SharedScene scene, const SenderOptions& options) try {
+  TACTUS_TRY(const SenderOptions used, checked(*scene, options));
+  auto impl = std::make_unique<Impl>(*scene, used.triggers);
+  impl->work.emplace(*scene);
+  impl->held = std::move(scene);
+  return std::shared_ptr<SharedTruth>(new SharedTruth(std::move(impl)));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<void> SharedTruth::read(std::int64_t tick, const Truth& truth) noexcept { return impl_->read(tick, truth); }
+
+Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options) {
+  return create(std::move(scene), options, nullptr);
+}
+
+Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options, std::shared_ptr<SharedTruth> truth) try {
+  TACTUS_TRY(const SenderOptions used, checked(*scene, options));
+  return Sender(std::make_unique<Impl>(std::move(scene), used, std::move(truth)));
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
@@ -148,6 +190,8 @@ void Sender::set_widening(double factor) noexcept {
   if (impl_->loads) impl_->loads->codec().set_widening(within);
 }
 
+void Sender::look_from(std::span<const Vec3> places) noexcept { impl_->rigid.codec().look_from(places); }
+
 void Sender::forget_last(std::size_t substream) noexcept {
   if (substream == 0) impl_->rigid.forget_last();
   else if (substream <= impl_->deformables.size()) impl_->deformables[substream - 1]->forget_last();
@@ -155,7 +199,7 @@ void Sender::forget_last(std::size_t substream) noexcept {
 }
 
 const SharedScene& Sender::scene() const noexcept { return impl_->scene; }
-std::span<const RigidState> Sender::objects() const noexcept { return impl_->rigid.newest().objects; }
+const RigidState& Sender::object(std::uint32_t object) const noexcept { return impl_->rigid.newest().objects[object]; }
 
 std::uint64_t Sender::state_hash(std::size_t substream) const noexcept {
   if (substream == 0) return tactus::state_hash(*impl_->scene, impl_->rigid.newest());

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include <tactus/base/elementary.h>
+
 namespace tactus {
 
 // ==== geometry ====
@@ -50,7 +52,7 @@ constexpr bool is_finite(const Quat& q) noexcept { return is_finite(q.w) && is_f
 /// Angle in [0, pi] rad of the rotation that takes a to b.
 inline double angle_between(const Quat& a, const Quat& b) noexcept {
   const Quat d = b * conjugate(a);
-  return 2.0 * std::atan2(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::abs(d.w));
+  return 2.0 * angle_of(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::abs(d.w));
 }
 
 struct Pose {

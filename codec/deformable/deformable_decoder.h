@@ -29,13 +29,13 @@ namespace tactus {
 
 class MainReader {
  public:
-  /// pre  `object` outlives the reader
-  explicit MainReader(const DeformableObject& object)
+  /// pre  `object` outlives the reader.   in   hierarchy  its own
+  MainReader(const DeformableObject& object, std::shared_ptr<const VertexHierarchy> hierarchy)
       : object_(object),
-        hierarchy_(vertex_hierarchy(object)),
+        hierarchy_(std::move(hierarchy)),
         rings_(object),
         predictor_(object),
-        coder_(hierarchy_, object.rest.size()),
+        coder_(*hierarchy_, object.rest.size()),
         expected_(object.rest.size()),
         coefficients_(object.basis.steps.size()) {}
 
@@ -48,7 +48,7 @@ class MainReader {
     if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
     if (head.touched && head.triangle >= object_.triangles.size()) return fail(Errc::invalid, "R-DEF-9");
     if (head.haptic > kMaxHapticIndex || head.visual > kMaxVisualBound) return fail(Errc::invalid, "R-DEF-10");
-    if (head.weight_set >= hierarchy_.parents.size()) return fail(Errc::invalid, "R-DEF-14");
+    if (head.weight_set >= hierarchy_->parents.size()) return fail(Errc::invalid, "R-DEF-14");
     const std::int64_t tick = base.tick + head.tick_delta;
     predictor_.predict(base, tick, expected_);
     coder_.set_packet(head, rings_, object_.rings);
@@ -93,7 +93,7 @@ class MainReader {
   }
 
   const DeformableObject& object_;
-  VertexHierarchy hierarchy_;
+  std::shared_ptr<const VertexHierarchy> hierarchy_;
   Rings rings_;
   ShapePredictor predictor_;
   VertexCoder coder_;
@@ -115,7 +115,7 @@ class MainDecoder {
   MainDecoder(const Scene& scene, const DeformableObject& object)
       : object_(object),
         baseline_span_(scene.baseline_span),
-        reader_(object),
+        reader_(object, scene.hierarchy(object)),
         next_(initial_main_state(object)),
         shown_(object.body ? object.rest.size() : 0) {}
 

@@ -66,10 +66,10 @@ MainEncoder::MainEncoder(const Scene& scene, const DeformableObject& object, con
       haptic_share_(options.haptic_share.value_or(default_share(scene, object))),
       unit_(std::ldexp(1.0, -scene.grid.position)),
       baseline_span_(scene.baseline_span),
-      hierarchy_(vertex_hierarchy(object)),
+      hierarchy_(scene.hierarchy(object)),
       rings_(object),
       predictor_(object),
-      coder_(hierarchy_, object.rest.size()),
+      coder_(*hierarchy_, object.rest.size()),
       projection_(object.basis),
       area_fit_(object.basis, projection_.gram()),
       next_(initial_main_state(object)),
@@ -205,7 +205,7 @@ Payload MainEncoder::write_vertices(MainHead& head, const MainState& base, std::
 
 /// The shortest payload of all sets of weights. The baseline's set comes last: it is mostly the best, and then not written again.
 Payload MainEncoder::write_shortest(MainHead& head, const MainState& base, std::span<std::uint8_t> out) noexcept {
-  const auto sets = static_cast<std::uint32_t>(hierarchy_.parents.size());
+  const auto sets = static_cast<std::uint32_t>(hierarchy_->parents.size());
   std::size_t least = out.size() + 1;
   std::uint32_t best = base.weight_set;
   for (std::uint32_t i = 1; i < sets; ++i) {

@@ -77,7 +77,7 @@ class MainEncoder {
   std::uint8_t baseline_span_;
   std::span<const Vec3i> truth_;
   const SurfaceTouch* touch_ = nullptr;
-  VertexHierarchy hierarchy_;
+  std::shared_ptr<const VertexHierarchy> hierarchy_;
   Rings rings_;
   ShapePredictor predictor_;
   VertexCoder coder_;

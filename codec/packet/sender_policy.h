@@ -19,6 +19,8 @@ struct LinkState {
   std::int64_t answer = 0;  ///< [ticks] after which a packet that arrived is acknowledged: round trip, jitter, time between
                             ///< acknowledgements. 0: not known, nothing is sent again
   double loss = 0;          ///< share of packets, 0 to 1
+  bool copies = false;  ///< what is lost also comes again as it was, and in time: nothing is made anew before the answer is due
+  bool waits = false;   ///< packets wait for their turn: rigid objects join one sooner. Also with Baseline::repaired
 };
 
 struct SenderPolicy {
@@ -29,6 +31,9 @@ struct SenderPolicy {
   /// initial state: a receiver that showed an earlier run goes on showing these as before, unless it begins anew as well.
   std::uint16_t first_sequence = 1;
   Baseline baseline = Baseline::previous;
+  /// [s] After this long without a packet of the rigid objects one of them is told again, and at once at the beginning: a receiver that
+  /// shows the past then knows the time. 0: never. Where states are acknowledged it does what the heartbeat of every object would.
+  double silence = 0;
 };
 
 }  // namespace tactus

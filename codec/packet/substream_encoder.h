@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <tactus/base/result.h>
+#include <tactus/base/untouched.h>
 #include <tactus/packet/packet.h>
 #include <tactus/packet/sender_policy.h>
 #include <tactus/packet/substream.h>
@@ -94,7 +95,10 @@ class SubstreamEncoder {
         substream_(substream),
         start_(has_substream_number(scene) ? 1 : 0),
         next_((std::uint64_t{1} << 16) + policy.first_sequence) {
-    buffers_.assign(layers, std::vector<std::uint8_t>(start_ + largest, static_cast<std::uint8_t>(substream)));
+    for (std::size_t i = 0; i < layers; ++i) {
+      buffers_.emplace_back(start_ + largest);
+      buffers_.back()[0] = static_cast<std::uint8_t>(substream);
+    }
   }
 
   /// in   number  given by a session, above all before: the packet does not carry it. Without: counted, and written
@@ -105,7 +109,7 @@ class SubstreamEncoder {
     PacketHead head{base == nullptr, static_cast<std::uint32_t>(next_ - base_), 0};
     if (head.key) base = &states_.initial();
     head.tick_delta = static_cast<std::uint32_t>(tick - base->tick);
-    std::vector<std::uint8_t>& buffer = buffers_[layer == Layer::visual ? 1 : 0];
+    UntouchedBytes& buffer = buffers_[layer == Layer::visual ? 1 : 0];
     const std::size_t start = start_ + (number ? 0 : 2);
     TACTUS_TRY(const Payload payload,
                codec_.encode({tick, next_, head, key_.is_requested() || is_overdue(tick), layer, states_.newest(), *base},
@@ -192,12 +196,12 @@ class SubstreamEncoder {
   KeyPolicy key_;
   Baseline baseline_;
   std::uint32_t span_;
-  std::size_t substream_, start_;                   // its number; where a packet begins behind that number
-  std::vector<std::vector<std::uint8_t>> buffers_;  // one per layer
-  std::uint64_t next_;                              // number of the next packet, unwrapped
-  std::uint64_t base_ = 0;                          // number of the baseline of the next packet
-  std::uint64_t oldest_ = 0;                        // lowest base_ allowed: a receiver that asked for a key holds none before
-  Before before_{key_, 0};                          // the last packet
+  std::size_t substream_, start_;        // its number; where a packet begins behind that number
+  std::vector<UntouchedBytes> buffers_;  // one per layer
+  std::uint64_t next_;                   // number of the next packet, unwrapped
+  std::uint64_t base_ = 0;               // number of the baseline of the next packet
+  std::uint64_t oldest_ = 0;             // lowest base_ allowed: a receiver that asked for a key holds none before
+  Before before_{key_, 0};               // the last packet
   bool can_forget_ = false;
   std::uint64_t newest_ = 0;  // number of the newest state; 0: of none
   std::int64_t answer_ = 0;   // [ticks] until it is acknowledged, if it arrived; 0: not known

@@ -19,6 +19,7 @@ namespace tactus {
 struct PoseOffset {
   std::array<std::int32_t, 3> position{};  ///< grid units
   std::array<std::int32_t, 3> rotation{};  ///< half the angle times the axis, 2^32 to the full circle
+  friend bool operator==(const PoseOffset&, const PoseOffset&) = default;
 };
 
 /// Shares of two offsets, x 2^-30: of `error` in position and in rotation, of `change` in both.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/rigid/encoder_choices.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <tactus/base/fixed.h>
 #include <tactus/rigid/rigid_syntax.h>
@@ -28,18 +30,21 @@ Vec3 agreed(const Vec3& a, const Vec3& b) noexcept { return {agreed(a.x, b.x), a
 
 }  // namespace
 
-double Acceleration::departure(double seconds) noexcept { return kFade * (seconds - kFade * (1 - std::exp(-seconds / kFade))); }
+double Acceleration::departure(double seconds) noexcept {
+  return kFade * (seconds - kFade * (1 - exponential(-seconds / kFade)));
+}
 
 Acceleration::Acceleration(const Scene& scene) : scene_(scene) {
   ticks_.fill(std::numeric_limits<std::int64_t>::min() / 4);
   for (auto& motions : motions_) motions.resize(scene.objects.size());
 }
 
-void Acceleration::read(std::int64_t tick, std::span<const RigidSample> samples) noexcept {
+void Acceleration::read(std::int64_t tick, std::span<const RigidSample> samples,
+                        std::span<const std::uint32_t> objects) noexcept {
   std::rotate(ticks_.begin(), ticks_.end() - 1, ticks_.end());
   std::rotate(motions_.begin(), motions_.end() - 1, motions_.end());
   ticks_[0] = tick;
-  for (const std::uint32_t i : scene_.moving()) motions_[0][i] = {samples[i].velocity, samples[i].angular_velocity};
+  for (const std::uint32_t i : objects) motions_[0][i] = {samples[i].velocity, samples[i].angular_velocity};
 }
 
 double Acceleration::seconds(std::size_t from, std::size_t to) const noexcept {
@@ -64,17 +69,22 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 
 ForceTrend::ForceTrend(const Scene& scene) : scene_(scene) {
   for (auto& forces : forces_) forces.assign(scene.objects.size(), kNone);
+  for (auto& touched : touched_) touched.reserve(scene.objects.size());
 }
 
 void ForceTrend::read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts) noexcept {
   std::rotate(ticks_.begin(), ticks_.end() - 1, ticks_.end());
   std::rotate(forces_.begin(), forces_.end() - 1, forces_.end());
+  std::rotate(touched_.begin(), touched_.end() - 1, touched_.end());
   ticks_[0] = tick;
-  for (const std::uint32_t i : scene_.moving()) forces_[0][i] = kNone;
+  for (const std::uint32_t i : touched_[0]) forces_[0][i] = kNone;
+  touched_[0].clear();
   for (const Contact& contact : contacts) {
     if (contact.kind == ContactKind::none) continue;
     double& least = forces_[0][contact.object];
-    least = std::min(least, norm(contact_force(contact, samples[contact.object].pose)));
+    const double force = norm(contact_force(contact, samples[contact.object].pose));
+    if (least == kNone && force < kNone) touched_[0].push_back(contact.object);
+    least = std::min(least, force);
   }
 }
 
@@ -235,10 +245,10 @@ double DrivenChoice::drag_of(std::uint32_t object, const RigidSample& now, const
 }
 
 void DrivenChoice::read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts,
-                        std::span<RigidState> truth) noexcept {
+                        std::span<DrivenContact> told) noexcept {
   const auto device = path_.at(tick);
   for (const std::uint32_t i : scene_.moving()) {
-    truth[i].contact = {};
+    told[i] = {};
     const DrivenConstants::Body& body = scene_.driven->bodies[i];
     const Contact* const contact = device && body.coupling != 0 ? own_contact(i, contacts, *device) : nullptr;
     Moment& moment = moments_[(kWindow + 1) * i + static_cast<std::size_t>(tick) % (kWindow + 1)];
@@ -251,18 +261,18 @@ void DrivenChoice::read(std::int64_t tick, std::span<const RigidSample> samples,
               .angular = rotate(conjugate(sample.pose.rotation), sample.angular_velocity),
               .pull = std::ldexp(body.coupling, -8) * gap,
               .arm = rotate(sample.pose.rotation, contact->point)};
-    DrivenContact told{.is_held = contact->kind == ContactKind::spring, .point = on_grid(contact->point, DrivenContact::kPoint)};
-    if (!told.is_held) {
+    DrivenContact out{.is_held = contact->kind == ContactKind::spring, .point = on_grid(contact->point, DrivenContact::kPoint)};
+    if (!out.is_held) {
       const auto window = std::span(moments_).subspan((kWindow + 1) * i, kWindow + 1);
       const std::int64_t first = std::max<std::int64_t>(0, tick - static_cast<std::int64_t>(kWindow));
       const bool whole = std::ranges::all_of(window, [first](const Moment& m) { return m.tick >= first; });
       if (!whole) continue;
-      told.normal = on_grid(contact->normal, DrivenContact::kNormal);
-      const Vec3 off = contact->point - off_grid(told.point, DrivenContact::kPoint);
+      out.normal = on_grid(contact->normal, DrivenContact::kNormal);
+      const Vec3 off = contact->point - off_grid(out.point, DrivenContact::kPoint);
       const Vec3 rounding = std::ldexp(body.coupling, -8) * rotate(sample.pose.rotation, off);
-      told.drag = on_grid({drag_of(i, sample, rounding), 0, 0}, DrivenContact::kDrag)[0];
+      out.drag = on_grid({drag_of(i, sample, rounding), 0, 0}, DrivenContact::kDrag)[0];
     }
-    truth[i].contact = told;
+    told[i] = out;
   }
 }
 
@@ -287,18 +297,39 @@ double error(const RigidPose& shown, const RigidState& truth, const PermittedErr
 
 }  // namespace
 
-PredictorChoice::PredictorChoice(const Scene& scene)
-    : scene_(scene),
-      predictor_(scene),
-      spacing_(static_cast<std::int64_t>(std::ceil(kSpacing * scene.tick_rate))),
+PastStates::PastStates(const Scene& scene)
+    : spacing_(static_cast<std::int64_t>(std::ceil(kSpacing * scene.tick_rate))),
       longest_(static_cast<std::int64_t>(std::floor(kLongestTime * scene.tick_rate))),
-      past_(kKept * scene.objects.size()) {}
+      states_(kKept * scene.objects.size()),
+      alike_(scene.objects.size(), 0),
+      unsettled_(scene.moving().begin(), scene.moving().end()) {}
 
-void PredictorChoice::read(std::int64_t tick, std::span<const RigidState> truth) noexcept {
-  if (count_ > 0 && tick - past_[scene_.moving()[0] * kKept + newest_].tick < spacing_) return;
+void PastStates::read(std::int64_t tick, std::span<const RigidState> truth, std::span<const std::uint32_t> moved,
+                      std::span<const DrivenContact> told) noexcept {
+  for (const std::uint32_t i : moved)
+    if (std::exchange(alike_[i], std::uint8_t{0}) == kKept) unsettled_.push_back(i);
+  if (count_ > 0 && tick - ticks_[newest_] < spacing_) return;
   newest_ = (newest_ + 1) % kKept;
   count_ = std::min(count_ + 1, kKept);
-  for (const std::uint32_t i : scene_.moving()) past_[i * kKept + newest_] = truth[i];
+  ticks_[newest_] = tick;
+  std::erase_if(unsettled_, [&](std::uint32_t i) {
+    RigidState& kept = states_[i * kKept + newest_];
+    kept = truth[i];
+    if (!told.empty()) kept.contact = told[i];
+    return ++alike_[i] == kKept;
+  });
+}
+
+std::optional<RigidState> PastStates::start(std::uint32_t object, std::int64_t now, std::size_t n) const noexcept {
+  constexpr std::array<std::size_t, 8> kAges{0, 1, 2, 4, 7, 11, 17, 26};
+  const auto slot = [&](std::size_t age) { return (newest_ + kKept - age) % kKept; };
+  if (count_ > 0 && ticks_[slot(0)] == now) ++n;
+  if (n >= kAges.size() || kAges[n] >= count_) return std::nullopt;
+  const std::size_t at = slot(kAges[n]);
+  if (now - ticks_[at] > longest_) return std::nullopt;
+  RigidState out = states_[object * kKept + at];
+  out.tick = ticks_[at];
+  return out;
 }
 
 bool PredictorChoice::is_declared_for(std::uint32_t object, Predictor predictor) const noexcept {
@@ -310,15 +341,6 @@ bool PredictorChoice::is_declared_for(std::uint32_t object, Predictor predictor)
   return !is_zero(motion.gravity);
 }
 
-const RigidState* PredictorChoice::start(std::uint32_t object, std::int64_t now, std::size_t n) const noexcept {
-  constexpr std::array<std::size_t, 8> kAges{0, 1, 2, 4, 7, 11, 17, 26};
-  const auto kept = [&](std::size_t age) { return &past_[object * kKept + (newest_ + kKept - age) % kKept]; };
-  if (count_ > 0 && kept(0)->tick == now) ++n;
-  if (n >= kAges.size() || kAges[n] >= count_) return nullptr;
-  const RigidState* const out = kept(kAges[n]);
-  return now - out->tick > longest_ ? nullptr : out;
-}
-
 double PredictorChoice::error_of(Predictor predictor, std::uint32_t object, RigidState from, const RigidState& truth,
                                  const PermittedError& permitted) const noexcept {
   from.predictor = predictor;
@@ -328,7 +350,7 @@ double PredictorChoice::error_of(Predictor predictor, std::uint32_t object, Rigi
 PredictorChoice::Record PredictorChoice::record_of(Predictor predictor, std::uint32_t object, const RigidState& truth,
                                                    const PermittedError& permitted) const noexcept {
   Record out;
-  while (const RigidState* const from = start(object, truth.tick, out.served)) {
+  while (const auto from = past_->start(object, truth.tick, out.served)) {
     const double e = error_of(predictor, object, *from, truth, permitted);
     if (e > 1) break;
     out.error += e;
@@ -341,16 +363,16 @@ bool PredictorChoice::drives_on(std::uint32_t object, const RigidState& truth, c
                                 const RigidState& current) const noexcept {
   if (current.predictor != Predictor::driven) return false;
   std::size_t n = 0;
-  const RigidState* from = start(object, truth.tick, n);
-  while (from != nullptr && from->tick > current.tick) from = start(object, truth.tick, ++n);
-  return from != nullptr && error_of(Predictor::linear, object, *from, truth, permitted) > 1;
+  auto from = past_->start(object, truth.tick, n);
+  while (from && from->tick > current.tick) from = past_->start(object, truth.tick, ++n);
+  return from && error_of(Predictor::linear, object, *from, truth, permitted) > 1;
 }
 
 bool PredictorChoice::is_driven(std::uint32_t object, const RigidState& truth, const PermittedError& permitted, Predictor other,
                                 std::size_t served) const noexcept {
   for (std::size_t n = served + 1; n-- > 0;) {
-    const RigidState* const from = start(object, truth.tick, n);
-    if (from == nullptr || from->contact == DrivenContact{}) continue;
+    const auto from = past_->start(object, truth.tick, n);
+    if (!from || from->contact == DrivenContact{}) continue;
     return error_of(Predictor::driven, object, *from, truth, permitted) < error_of(other, object, *from, truth, permitted);
   }
   return false;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,8 +34,11 @@ class Acceleration {
   /// pre  `scene` outlives this
   explicit Acceleration(const Scene& scene);
 
-  /// The truth of a tick, after those before it.   time O(moving objects), no allocation
-  void read(std::int64_t tick, std::span<const RigidSample> samples) noexcept;
+  static constexpr std::size_t kKept = 3;  ///< ticks
+
+  /// The truth of a tick, after those before it.   in   objects  those that have moved in the last kKept ticks
+  /// time O(objects), no allocation
+  void read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const std::uint32_t> objects) noexcept;
   /// [m/s^2, rad/s^2] at the last read(). Zero in each component where the last two differences of the velocities do not agree.
   Motion of(std::uint32_t object) const noexcept;
 
@@ -42,8 +46,8 @@ class Acceleration {
   double seconds(std::size_t from, std::size_t to) const noexcept;
 
   const Scene& scene_;
-  std::array<std::int64_t, 3> ticks_;           // of the past, newest first
-  std::array<std::vector<Motion>, 3> motions_;  // by object
+  std::array<std::int64_t, kKept> ticks_;           // of the past, newest first
+  std::array<std::vector<Motion>, kKept> motions_;  // by object
 };
 
 // ==== force trend ====
@@ -55,15 +59,16 @@ class ForceTrend {
   /// pre  `scene` outlives this.   allocates
   explicit ForceTrend(const Scene& scene);
 
-  /// The contacts of a tick, after those before it.   time O(moving objects + contacts), about 30 ns per contact; no allocation
+  /// The contacts of a tick, after those before it.   time O(contacts), about 30 ns each; no allocation
   void read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts) noexcept;
   /// [1/s] the part of the least force on the object that goes per second; 0 if it grows, or was not there two ticks ago
   double sinking(std::uint32_t object) const noexcept;
 
  private:
   const Scene& scene_;
-  std::array<std::int64_t, 3> ticks_{};        // of the past, newest first
-  std::array<std::vector<double>, 3> forces_;  // [N] the least by object; infinite: nothing touches it
+  std::array<std::int64_t, 3> ticks_{};                // of the past, newest first
+  std::array<std::vector<double>, 3> forces_;          // [N] the least by object; infinite: nothing touches it
+  std::array<std::vector<std::uint32_t>, 3> touched_;  // where they are finite
 };
 
 // ==== error share ====
@@ -146,10 +151,10 @@ class DrivenChoice {
   /// pre  `scene` and `path` outlive this, and the scene has driven objects.   allocates
   DrivenChoice(const Scene& scene, const DevicePath& path);
 
-  /// Write the contact of each object into `truth`; none where no device drives it, or one that is not that of the path.
+  /// Write what is told of each object; nothing where no device drives it, or one that is not that of the path.
   /// time O(moving objects + contacts), 0.1 us each; no allocation
   void read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts,
-            std::span<RigidState> truth) noexcept;
+            std::span<DrivenContact> told) noexcept;
 
  private:
   static constexpr std::size_t kWindow = 4;  // ticks over which the drag is looked at
@@ -184,32 +189,57 @@ struct PermittedError {
   double rotation = 0;  ///< [rad]
 };
 
+/// True states of the last 150 ms.
+class PastStates {
+ public:
+  static constexpr std::size_t kKept = 32;
+
+  /// pre  `scene` outlives this.   allocates 3 kB per object
+  explicit PastStates(const Scene& scene);
+
+  /// The truth of a tick, after those before it.
+  /// in   moved  objects that are not what they were in the tick before;  told  of the device that drives them; empty: of none
+  /// time O(objects that have moved of late), about 10 ns each, no allocation
+  void read(std::int64_t tick, std::span<const RigidState> truth, std::span<const std::uint32_t> moved,
+            std::span<const DrivenContact> told = {}) noexcept;
+  /// The n-th youngest state that predictors are started from; nothing: there is none, or it says nothing of `now`.
+  std::optional<RigidState> start(std::uint32_t object, std::int64_t now, std::size_t n) const noexcept;
+
+ private:
+  std::int64_t spacing_;    // [ticks] between states that are kept
+  std::int64_t longest_;    // [ticks] older states say nothing of now
+  std::size_t newest_ = 0;  // of the ring
+  std::size_t count_ = 0;   // kept
+  std::array<std::int64_t, kKept> ticks_{};
+  std::vector<RigidState> states_;        // kKept per object; those of one that rests are alike
+  std::vector<std::uint8_t> alike_;       // by object: the newest so many are, as it has not moved since
+  std::vector<std::uint32_t> unsettled_;  // objects of which not all are alike
+};
+
 class PredictorChoice {
  public:
-  /// pre  `scene` outlives this, and has motion constants
-  explicit PredictorChoice(const Scene& scene);
+  /// pre  both outlive this, and the scene has motion constants
+  PredictorChoice(const Scene& scene, const PastStates& past) : scene_(scene), past_(&past), predictor_(scene) {}
 
-  void know(const DevicePath& path) { predictor_.know(path); }  ///< RigidPredictor::know
+  /// The receiver's device, and a past with what is told of it.   RigidPredictor::know
+  void know(const DevicePath& path, const PastStates& past) {
+    past_ = &past;
+    predictor_.know(path);
+  }
 
-  /// The truth of a tick, after those before it.   time O(moving objects), about 10 ns each, no allocation; memory 2 kB per object
-  void read(std::int64_t tick, std::span<const RigidState> truth) noexcept;
-  /// in   truth       the object's state of the last read(); where a device drives it, its contact is told
+  /// in   truth       the object's state of now; where a device drives it, its contact is told
   /// in   is_touched  by a device, known or not;  current  the update that it replaces
   /// time < 2 us; where a device drives the object 0.1 us more for each tick of the path looked at, most often 50; no allocation
   Predictor choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted, bool is_touched,
                    const RigidState& current) const noexcept;
 
  private:
-  static constexpr std::size_t kKept = 32;
-
   /// What a predictor would have done.
   struct Record {
     std::size_t served = 0;  // starts from which the error is within what is permitted
     double error = 0;        // sum over them
   };
 
-  /// The n-th youngest state that predictors are started from; null: there is none, or it says nothing of `now`.
-  const RigidState* start(std::uint32_t object, std::int64_t now, std::size_t n) const noexcept;
   double error_of(Predictor predictor, std::uint32_t object, RigidState from, const RigidState& truth,
                   const PermittedError& permitted) const noexcept;
   Record record_of(Predictor predictor, std::uint32_t object, const RigidState& truth,
@@ -223,12 +253,8 @@ class PredictorChoice {
                  std::size_t served) const noexcept;
 
   const Scene& scene_;
+  const PastStates* past_;
   RigidPredictor predictor_;
-  std::int64_t spacing_;          // [ticks] between states that are kept
-  std::int64_t longest_;          // [ticks] older states say nothing of now
-  std::size_t newest_ = 0;        // of the ring
-  std::size_t count_ = 0;         // kept
-  std::vector<RigidState> past_;  // kKept per object
 };
 
 }  // namespace tactus

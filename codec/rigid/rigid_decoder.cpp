@@ -54,8 +54,8 @@ Result<void> RigidDecoder::read_body(const RigidStates& base, std::int64_t tick,
 }
 
 void RigidDecoder::commit(const RigidStates& base, RigidStates& next) noexcept {
-  if (&base != &next) std::copy(base.objects.begin(), base.objects.end(), next.objects.begin());
-  for (std::size_t i = 0; i < updates_.size(); ++i) next.objects[updates_[i].object] = states_[i];
+  if (&base != &next) next.objects = base.objects;
+  for (std::size_t i = 0; i < updates_.size(); ++i) next.objects.set(updates_[i].object, states_[i]);
 }
 
 }  // namespace tactus

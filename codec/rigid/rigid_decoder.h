@@ -26,7 +26,7 @@ class RigidDecoder {
   Result<PacketHead> read_head(std::span<const std::uint8_t> payload) noexcept;
   /// time O(updates), < 2 us for one; no allocation.   err  malformed R-RNG-n; invalid R-RIG-3, R-RIG-4, R-RIG-6, R-RIG-7
   Result<void> read_body(const RigidStates& base, std::int64_t tick, DecodedPacket& out) noexcept;
-  /// time O(updates), and O(objects) where `next` is not `base`
+  /// time O(updates), and O(objects / 8) where `next` is not `base`
   void commit(const RigidStates& base, RigidStates& next) noexcept;
   std::uint64_t bit() const noexcept { return 8 * std::min<std::uint64_t>(coder_.position(), payload_); }
 

@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <tactus/base/rule.h>
-#include <tactus/rigid/encoder_choices.h>
 
 namespace tactus {
 namespace {
@@ -18,11 +19,13 @@ namespace {
 constexpr unsigned kCoarsestLevel = 15;
 constexpr double kVisualShare = 0.18;
 constexpr double kHapticShare = 0.2;
-// Baseline::acknowledged: objects near their bounds join a packet that goes out anyway, and what is not acknowledged goes again.
-constexpr double kEarly = 0.5, kEarlyAtHeavyLoss = 0.3;                   // shares of a bound
+// Unless packets build on the one before and nobody repairs them, objects near their bounds join a packet that goes out anyway: a datagram's
+// headers cost more than an update. Where packets wait for their turn few objects join whenever they move at all.
+constexpr double kEarly = 0.5, kEarlyAtHeavyLoss = 0.3, kFewEarly = 0.3, kVeryFewEarly = 0.15;  // shares of a bound
+constexpr std::size_t kFew = 24, kVeryFew = 12;                                                 // objects that are awake
+// Baseline::acknowledged: what is not acknowledged goes again.
 constexpr double kSomeLoss = 0.003, kMoreLoss = 0.01, kHeavyLoss = 0.15;  // shares of packets
 constexpr std::array kFollowUp{0.020, 0.040, 0.060};                      // [s] since the last sending
-constexpr std::int32_t kDofTolerance = 64;                                // x 2^-30: a locked axis may be off by rounding only
 
 Result<PoseThresholds> make_thresholds(double distance, double angle, const GridExponents& grid) {
   const double unit = std::ldexp(1.0, -grid.position);
@@ -85,27 +88,6 @@ SmallError error_of(const Pose& truth, const Pose& shown) noexcept {
   return {shown.position - truth.position, (turn.w < 0 ? -2.0 : 2.0) * Vec3{turn.x, turn.y, turn.z}};
 }
 
-/// Does the truth keep to the axes that the header declares?
-bool obeys_dof(const RigidObject& object, const RigidState& truth) noexcept {
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!(object.dof >> i & 1u) && std::abs(static_cast<std::int64_t>(truth.position[i]) - object.initial.position[i]) > 1)
-      return false;
-  }
-  if (object.dof >> 3 == 7) return true;
-  const Quat30 turn = multiply(truth.rotation, conjugate(object.initial.rotation));
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!(object.dof >> (3 + i) & 1u) && std::abs(turn[i + 1]) > kDofTolerance) return false;
-  }
-  return true;
-}
-
-bool is_valid(const Contact& c, const Scene& scene) noexcept {
-  if (c.kind == ContactKind::none) return true;
-  const bool unit = c.kind == ContactKind::spring || std::abs(norm(c.normal) - 1) <= 1e-6;
-  return c.kind <= ContactKind::spring && c.object < scene.objects.size() && is_finite(c.point) && is_finite(c.normal) && unit &&
-         is_finite(c.device) && std::isfinite(c.stiffness) && c.stiffness > 0;
-}
-
 bool are_valid(const RigidTriggers& t) noexcept {
   return std::isfinite(t.heartbeat) && t.heartbeat >= 0 && t.heartbeat <= 3600 && t.weber_fraction > 0 && t.weber_fraction <= 1 &&
          std::isfinite(t.perceptual_share) && t.perceptual_share > 0 && std::isfinite(t.force_floor) && t.force_floor > 0 &&
@@ -121,83 +103,179 @@ Result<void> RigidEncoder::check(const RigidTriggers& triggers, const GridExpone
   return {};
 }
 
-RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Baseline baseline)
+RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, const SenderPolicy& policy, const RigidTruth& truth,
+                           RigidWork* work)
     : scene_(scene),
       triggers_(triggers),
       predictor_(scene),
-      early_(baseline == Baseline::acknowledged ? kEarly : 1),
+      acknowledges_(policy.baseline == Baseline::acknowledged),
+      early_(policy.baseline == Baseline::previous ? 1 : kEarly),
       heartbeat_(static_cast<std::int64_t>(std::ceil(triggers.heartbeat * scene.tick_rate))),
-      truth_(initial_states(scene).objects) {
-  if (triggers.reduction != Reduction::none) {
-    if (scene.is_eased) acceleration_.emplace(scene);
-    if (scene.is_eased && triggers.haptic != HapticRule::off) force_trend_.emplace(scene);
-    if (has_predictors(scene)) choice_.emplace(scene);
-  }
+      silence_(static_cast<std::int64_t>(std::ceil(policy.silence * scene.tick_rate))),
+      truth_(truth),
+      work_(work),
+      awake_(scene.objects.size()) {
+  if (truth.past() != nullptr) choice_.emplace(scene, *truth.past());
   pending_.reserve(scene.moving().size());
   before_.reserve(scene.moving().size());
-  for (std::uint32_t i = 0; i < truth_.size(); ++i) sent_.push_back({.path = {.object = i, .state = truth_[i]}});
+  if (work != nullptr) {
+    const std::size_t most = std::min(scene.moving().size(), RigidWork::kMostUpdates);
+    key_.reserve(RigidWork::kAll + RigidWork::kEach * most);
+    after_.reserve(most);
+  }
+  sent_.reserve(scene.objects.size());
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
+    sent_.push_back({.path = {.object = i, .state = initial_state(scene, i)}});
+  if (scene.interest) levels_.emplace(scene);
   set_widening(1);
 }
 
 void RigidEncoder::know(const DevicePath& path) {
   if (!scene_.driven || !choice_) return;
   predictor_.know(path);
-  choice_->know(path);
   driven_.emplace(scene_, path);
+  choice_->know(path, driven_->past);
 }
 
 void RigidEncoder::set_widening(double factor) noexcept {
-  widening_ = factor;
-  visual_ = widened(triggers_.visual_position, triggers_.visual_rotation, factor, scene_.grid);
-  fixed_ = widened(triggers_.fixed_position, triggers_.fixed_rotation, factor, scene_.grid);
-  if (triggers_.reduction == Reduction::none) visual_.level = fixed_.level = 0;  // the reference is as exact as the grid
-  early_visual_ = scaled(visual_, early_);
+  for (std::size_t lod = 0; lod < (levels_ ? bounds_.size() : 1); ++lod) {
+    Bounds& b = bounds_[lod];
+    b.widening = std::ldexp(factor, static_cast<int>(lod));
+    b.visual = widened(triggers_.visual_position, triggers_.visual_rotation, b.widening, scene_.grid);
+    b.fixed = widened(triggers_.fixed_position, triggers_.fixed_rotation, b.widening, scene_.grid);
+    if (triggers_.reduction == Reduction::none) b.visual.level = b.fixed.level = 0;  // the reference is as exact as the grid
+    b.early = scaled(b.visual, early_);
+  }
+  wakes_all_ = true;
+}
+
+void RigidEncoder::look_from(std::span<const Vec3> places) noexcept {
+  if (levels_) levels_->look_from(places);
 }
 
 void RigidEncoder::set_link(const LinkState& link) noexcept {
   loses_more_ = link.loss >= kMoreLoss;
-  if (early_ == 1) return;  // what is lost comes again, as it was
-  early_ = link.loss > kHeavyLoss ? kEarlyAtHeavyLoss : kEarly;
+  waits_ = link.waits;
+  if (!acknowledges_) return;  // what is lost comes again, as it was
+  loses_much_ = link.loss > kHeavyLoss;
   loses_ = link.loss >= kSomeLoss;
-  early_visual_ = scaled(visual_, early_);
   for (std::size_t i = 0; i < follow_up_.size(); ++i) {
     const auto soon = static_cast<std::int64_t>(std::ceil(kFollowUp[i] * scene_.tick_rate));
-    follow_up_[i] = link.answer <= 0 ? 0 : link.loss >= kSomeLoss ? soon : link.answer;
+    follow_up_[i] = link.answer <= 0 ? 0 : link.loss >= kSomeLoss && !link.copies ? soon : link.answer;
   }
 }
 
-Result<void> RigidEncoder::read(std::int64_t tick, std::span<const RigidSample> samples,
-                                std::span<const Contact> contacts) noexcept {
-  const bool sound = std::ranges::all_of(contacts, [&](const Contact& c) { return is_valid(c, scene_); });
-  if (samples.size() != scene_.objects.size() || !sound) return fail(Errc::invalid_argument, "R-API-5");
-  for (const std::uint32_t i : scene_.moving()) {
-    TACTUS_TRY(truth_[i], to_grid(samples[i], tick, scene_.grid));
-    if (!obeys_dof(scene_.objects[i], truth_[i])) return fail(Errc::invalid_argument, "R-API-6");
+/// The truth of this tick, and what the receiver's device means for it.
+void RigidEncoder::take() noexcept {
+  if (driven_) {
+    if (loses_more_) std::ranges::fill(driven_->told, DrivenContact{});
+    else driven_->choice.read(truth_.tick(), truth_.samples(), truth_.contacts(), driven_->told);
+    driven_->past.read(truth_.tick(), truth_.states(), scene_.moving(), driven_->told);
   }
-  samples_ = samples;
-  contacts_ = contacts;
-  if (acceleration_) acceleration_->read(tick, samples);
-  if (force_trend_) force_trend_->read(tick, samples, contacts);
-  if (driven_ && !loses_more_) driven_->read(tick, samples, contacts, truth_);
-  if (choice_) choice_->read(tick, truth_);
-  return {};
+  wake();
+}
+
+/// From which share of its bounds on an object joins a packet.
+void RigidEncoder::choose_early() noexcept {
+  if (early_ == 1) return;
+  double early = acknowledges_ && loses_much_ ? kEarlyAtHeavyLoss : kEarly;
+  if (waits_ && awake_.objects().size() <= kFew) early = awake_.objects().size() <= kVeryFew ? kVeryFewEarly : kFewEarly;
+  if (early == early_) return;
+  early_ = early;
+  for (Bounds& b : bounds_) b.early = scaled(b.visual, early_);
 }
 
 bool RigidEncoder::is_touched(std::uint32_t object) const noexcept {
-  return triggers_.haptic != HapticRule::off &&
-         std::ranges::any_of(contacts_, [object](const Contact& c) { return c.kind != ContactKind::none && c.object == object; });
+  return triggers_.haptic != HapticRule::off && truth_.is_touched(object);
 }
+
+/// With the tick of now.
+RigidState RigidEncoder::truth_of(std::uint32_t object) const noexcept {
+  RigidState out = truth_.state(object);
+  out.tick = truth_.tick();
+  if (driven_) out.contact = driven_->told[object];
+  out.lod = lod_of(object);
+  return out;
+}
+
+// ==== what is awake ====
+
+/// At first what has never left its initial state is where a receiver shows it, within every bound; with interest all are out of it, and those
+/// that are not are found by turns.
+void RigidEncoder::wake() noexcept {
+  const std::uint64_t last = std::exchange(read_, truth_.reads());
+  const bool begins = !std::exchange(has_begun_, true) && heartbeat_ == 0 && (!levels_ || levels_->looks());
+  const bool wakes_all = std::exchange(wakes_all_, false) && !begins;
+  if (wakes_all || triggers_.reduction == Reduction::none) return awake_.wake(scene_.moving());
+  if (begins) {
+    for (const std::uint32_t i : truth_.left()) wake(i);
+  } else if (last + 1 == read_) {
+    for (const std::uint32_t i : truth_.moved()) wake(i);
+  } else {
+    for (const std::uint32_t i : scene_.moving())
+      if (truth_.has_moved_since(last, i)) wake(i);
+  }
+  for (const std::uint32_t i : truth_.touched())
+    if (scene_.objects[i].dof != 0) wake(i);
+  awake_.wake_due(truth_.tick());
+}
+
+/// Not for what the client is not told of.
+void RigidEncoder::wake(std::uint32_t object) noexcept {
+  if (!levels_ || !levels_->is_left_out(object)) awake_.wake(object);
+}
+
+/// Levels of what is awake, and of what the client comes to or goes away from.
+void RigidEncoder::look() noexcept {
+  levels_->scan(truth_, [this](std::uint32_t object) { awake_.wake(object); });
+  for (const std::uint32_t i : awake_.objects()) levels_->look(i, truth_);
+}
+
+/// The prediction from this state is where it will be.
+bool RigidEncoder::stands_still(const RigidState& state) const noexcept {
+  const std::int64_t tick = truth_.tick();
+  if (is_easing(state, tick) || state.predictor == Predictor::driven) return false;
+  if (tick - state.tick >= scene_.max_extrapolation) return true;
+  if (state.predictor == Predictor::ballistic) return false;
+  if (state.velocity == Vec3i{} && state.angular_velocity == Vec3i{}) return true;
+  if (state.predictor != Predictor::slide) return false;
+  const RigidPose now = predictor_.pose(state, tick), end = predictor_.pose(state, state.tick + scene_.max_extrapolation);
+  return now.position == end.position && now.rotation == end.rotation;
+}
+
+/// Neither the object nor its prediction moves, and nothing is left to tell: nothing changes before its heartbeat.
+std::optional<std::int64_t> RigidEncoder::sleeps_until(std::uint32_t object) noexcept {
+  const Sent& sent = sent_[object];
+  if (levels_ && lod_of(object) != sent.path.state.lod) return std::nullopt;
+  if (lod_of(object) == kOutOfInterest) {
+    if (acknowledges_ && !sent.acknowledged) return std::nullopt;
+    levels_->leave_out(object);
+    return AwakeObjects::kNever;
+  }
+  if (truth_.has_moved(object) || truth_.is_touched(object) || !stands_still(sent.path.state)) return std::nullopt;
+  if (acknowledges_ && !sent.acknowledged) return std::nullopt;
+  const RigidDecision decision = decide(object, early_ < 1);
+  if (decision.reason != Reason::request || decision.is_early) return std::nullopt;
+  return heartbeat_ > 0 ? sent.path.state.tick + heartbeat_ : AwakeObjects::kNever;
+}
+
+void RigidEncoder::sleep() noexcept {
+  if (triggers_.reduction == Reduction::none) return;
+  awake_.sleep([this](std::uint32_t object) { return sleeps_until(object); });
+}
+
+// ==== what to tell ====
 
 /// The largest haptic_ratio() of the contacts on the object; with the rule `fixed` 0 or infinite.
 double RigidEncoder::haptic_ratio_of(std::uint32_t object, const RigidPose& shown) const noexcept {
   constexpr double kOutside = std::numeric_limits<double>::infinity();
   double out = 0;
-  if (triggers_.haptic == HapticRule::off) return out;
-  for (const Contact& contact : contacts_) {
+  if (!is_touched(object)) return out;
+  for (const Contact& contact : truth_.contacts()) {
     if (contact.kind == ContactKind::none || contact.object != object) continue;
-    if (triggers_.haptic == HapticRule::fixed) return within(fixed_, shown, truth_[object]) ? 0 : kOutside;
+    if (triggers_.haptic == HapticRule::fixed) return within(bounds_of(object).fixed, shown, truth_.state(object)) ? 0 : kOutside;
     const Vec3 estimate = contact_force(contact, to_pose(shown, scene_.grid.position));
-    const double ratio = haptic_ratio(triggers_, contact_force(contact, samples_[object].pose), estimate);
+    const double ratio = haptic_ratio(triggers_, contact_force(contact, truth_.samples()[object].pose), estimate);
     if (std::isnan(ratio)) return kOutside;  // forces too large to compare
     out = std::max(out, ratio);
   }
@@ -206,84 +284,107 @@ double RigidEncoder::haptic_ratio_of(std::uint32_t object, const RigidPose& show
 
 /// An update would bring the shown pose nearer to the truth: they are not at the same place of the grid.
 bool RigidEncoder::can_improve(std::uint32_t object, const RigidPose& shown) const noexcept {
-  const Residual rest = quantise_pose(shown, truth_[object], scene_.objects[object].dof, 0, scene_.grid);
+  const Residual rest = quantise_pose(shown, truth_.state(object), scene_.objects[object].dof, 0, scene_.grid);
   return rest.of != Residual{}.of;
 }
 
-Reason RigidEncoder::reason_for(std::uint32_t object) const noexcept {
-  const EasedPath& path = sent_[object].path;
-  const std::int64_t tick = truth_[object].tick;
+/// in   early  ask whether it would soon cause a packet, too
+RigidDecision RigidEncoder::decide_alone(const EasedPath& path, bool early) const noexcept {
+  const std::uint32_t object = path.object;
+  const std::int64_t tick = truth_.tick();
+  const RigidState& truth = truth_.state(object);
   const RigidPose course = predictor_.shown(object, path.state, tick);
   const RigidPose shown = eased(course, path.state, path.offset, tick);
-  if (haptic_ratio_of(object, shown) > widening_ && can_improve(object, shown)) return Reason::haptic;
-  if (!within(visual_, shown, truth_[object])) return Reason::visual;
-  if (is_easing(path.state, tick) && !within(visual_, course, truth_[object])) return Reason::visual;
-  if (heartbeat_ > 0 && tick - path.state.tick >= heartbeat_) return Reason::heartbeat;
-  return Reason::request;
+  const double felt = haptic_ratio_of(object, shown);
+  const Bounds& bounds = bounds_of(object);
+  RigidDecision out;
+  if (felt > bounds.widening && can_improve(object, shown)) out.reason = Reason::haptic;
+  else if (!within(bounds.visual, shown, truth) || (is_easing(path.state, tick) && !within(bounds.visual, course, truth)))
+    out.reason = Reason::visual;
+  else if (heartbeat_ > 0 && tick - path.state.tick >= heartbeat_) out.reason = Reason::heartbeat;
+  out.is_early =
+      early && (!within(bounds.early, shown, truth) || (felt > early_ * bounds.widening && can_improve(object, shown)));
+  return out;
+}
+
+/// The same, or what another encoder found.
+RigidDecision RigidEncoder::decide(std::uint32_t object, bool early) noexcept {
+  const EasedPath& path = sent_[object].path;
+  if (work_ == nullptr || (driven_ && path.state.predictor == Predictor::driven)) return decide_alone(path, early);
+  const RigidWork::Asked asked{sent_[object].version, object, bounds_of(object).widening, early ? early_ : 1};
+  if (const RigidDecision* const known = work_->find(read_, asked)) return *known;
+  const RigidDecision out = decide_alone(path, early);
+  work_->put(read_, asked, out);
+  return out;
 }
 
 bool RigidEncoder::is_follow_up_due(std::uint32_t object) const noexcept {
   const Sent& sent = sent_[object];
   const std::int64_t wait = follow_up_[std::min<std::size_t>(sent.follow_ups, follow_up_.size() - 1)];
-  return !sent.acknowledged && wait > 0 && truth_[object].tick - sent.path.state.tick >= wait;
-}
-
-/// Whether an object whose trigger did not fire is named in a packet that others have caused: in a key packet if it has left its
-/// initial state; else if it would soon cause a packet of its own.
-bool RigidEncoder::joins(std::uint32_t object, const EncodeRequest<RigidStates>& request) const noexcept {
-  const EasedPath& path = sent_[object].path;
-  if (request.head.key && path.state != request.base.objects[object]) return true;
-  if (early_ == 1) return false;
-  const RigidPose shown = path.pose(predictor_, request.tick);
-  return !within(early_visual_, shown, truth_[object]) ||
-         (haptic_ratio_of(object, shown) > early_ * widening_ && can_improve(object, shown));
+  return !sent.acknowledged && wait > 0 && truth_.tick() - sent.path.state.tick >= wait;
 }
 
 /// Nothing is pending without at least one trigger, follow-up or request.
 void RigidEncoder::collect(const EncodeRequest<RigidStates>& request) noexcept {
   pending_.clear();
-  for (const std::uint32_t i : scene_.moving()) {
-    const Reason reason = reason_for(i);
-    const bool fires = reason != Reason::request || triggers_.reduction == Reduction::none;
-    if (fires || is_follow_up_due(i)) pending_.push_back({i, reason, {}, !fires});
+  for (const std::uint32_t i : awake_.objects()) {
+    const std::uint8_t lod = lod_of(i);
+    const bool is_out = lod == kOutOfInterest;
+    const Reason reason = is_out ? Reason::request : decide(i, false).reason;
+    const bool fires =
+        reason != Reason::request || lod != sent_[i].path.state.lod || (triggers_.reduction == Reduction::none && !is_out);
+    if (fires || is_follow_up_due(i)) pending_.push_back({.object = i, .reason = reason, .follow_up = !fires, .after = {}});
   }
+  if (pending_.empty() && is_silent())
+    pending_.push_back({.object = scene_.moving()[0], .reason = Reason::heartbeat, .follow_up = false, .after = {}});
+  if ((pending_.empty() && !request.requested) || (!request.head.key && early_ == 1)) return;
+  add_joining(request);
+}
+
+/// Objects whose trigger did not fire are named in a packet that others have caused: in a key packet if they have left their initial
+/// state; else if they would soon cause a packet of their own. What sleeps would not. What is out of interest is never named.
+void RigidEncoder::add_joining(const EncodeRequest<RigidStates>& request) noexcept {
   const std::size_t causes = pending_.size();
-  if ((causes == 0 && !request.requested) || (!request.head.key && early_ == 1)) return;
   std::size_t next = 0;  // of the causes
-  for (const std::uint32_t i : scene_.moving()) {
-    if (next < causes && pending_[next].object == i) ++next;
-    else if (joins(i, request)) pending_.push_back({i, Reason::request, {}, false});
+  for (const std::uint32_t i : request.head.key ? scene_.moving() : awake_.objects()) {
+    if (next < causes && pending_[next].object == i) {
+      ++next;
+      continue;
+    }
+    if (lod_of(i) == kOutOfInterest) continue;
+    const bool is_new = request.head.key && sent_[i].path.state != request.base.objects[i];
+    if (is_new || (early_ < 1 && awake_.is_awake(i) && decide(i, true).is_early))
+      pending_.push_back({.object = i, .reason = Reason::request, .follow_up = false, .after = {}});
   }
   std::ranges::sort(pending_, {}, &Pending::object);
 }
 
-RigidTriggers RigidEncoder::widened_triggers() const noexcept {
+RigidTriggers RigidEncoder::widened_triggers(std::uint32_t object) const noexcept {
   RigidTriggers out = triggers_;
   for (double* bound : {&out.visual_position, &out.visual_rotation, &out.weber_fraction, &out.perceptual_share,
                         &out.fixed_position, &out.fixed_rotation})
-    *bound *= widening_;
+    *bound *= bounds_of(object).widening;
   return out;
 }
 
-Predictor RigidEncoder::chosen(std::uint32_t object, const RigidTriggers& bounds) const noexcept {
+Predictor RigidEncoder::chosen(std::uint32_t object, const RigidState& truth, const RigidTriggers& bounds) const noexcept {
   PermittedError permitted{bounds.visual_position, bounds.visual_rotation};
-  for (const Contact& contact : contacts_) {
+  for (const Contact& contact : truth_.contacts()) {
     if (contact.kind == ContactKind::none || contact.object != object || bounds.haptic == HapticRule::off) continue;
-    const double force = norm(contact_force(contact, samples_[object].pose));
+    const double force = norm(contact_force(contact, truth_.samples()[object].pose));
     const bool fixed = bounds.haptic == HapticRule::fixed;
     permitted.position =
         std::min(permitted.position, fixed ? bounds.fixed_position : force_budget(bounds, force) / contact.stiffness);
     if (fixed) permitted.rotation = std::min(permitted.rotation, bounds.fixed_rotation);
   }
-  return choice_->choose(object, truth_[object], permitted, is_touched(object), sent_[object].path.state);
+  return choice_->choose(object, truth, permitted, is_touched(object), sent_[object].path.state);
 }
 
 /// The true state with the velocities that an update is to tell.   pre  it is predicted linearly
-RigidState RigidEncoder::leaned(std::uint32_t object, const Acceleration::Motion& acceleration,
+RigidState RigidEncoder::leaned(const RigidState& truth, std::uint32_t object, const Acceleration::Motion& acceleration,
                                 const ErrorShare& share) const noexcept {
-  const RigidState& truth = truth_[object];
-  if (!acceleration_ || loses_) return truth;
-  RigidSample sample = samples_[object];
+  if (truth_.acceleration() == nullptr || loses_) return truth;
+  RigidSample sample = truth_.samples()[object];
   const Acceleration::Motion more = leaning(acceleration, share);
   sample.velocity = sample.velocity + more.linear;
   sample.angular_velocity = sample.angular_velocity + more.angular;
@@ -303,18 +404,19 @@ UpdateCourse RigidEncoder::course_of(const RigidState& state, const RigidPose& k
 void RigidEncoder::choose_ease(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
                                const ErrorShare& share) const noexcept {
   const std::uint32_t object = update.object;
-  const RigidPose shown = sent_[object].path.pose(predictor_, truth_[object].tick);
-  RigidState tried = update.state;
+  const RigidPose shown = sent_[object].path.pose(predictor_, truth_.tick());
+  RigidState tried = update.after.path.state;
   const RigidPose own{tried.position, tried.rotation};
   const PoseOffset offset = offset_between(own, shown);
   tried.ease = 1;
   tried.keep = update.reason == Reason::haptic ? 1 : 0;  // all of it is what is felt
   for (; tried.keep < 4; ++tried.keep) {
     const RigidPose kept = eased(own, tried, part_kept(offset, tried.keep), tried.tick);
-    if (!within(visual_, kept, truth_[object]) || haptic_ratio_of(object, kept) > widening_) continue;
-    tried.ease = longest_ease(course_of(tried, kept, samples_[object], acceleration), share, scene_.tick_rate);
+    const Bounds& bounds = bounds_of(object);
+    if (!within(bounds.visual, kept, truth_.state(object)) || haptic_ratio_of(object, kept) > bounds.widening) continue;
+    tried.ease = longest_ease(course_of(tried, kept, truth_.samples()[object], acceleration), share, scene_.tick_rate);
     if (tried.ease == 0) return;
-    update.state = tried;
+    update.after.path.state = tried;
     coded.ease = tried.ease;
     coded.keep = tried.keep;
     return;
@@ -322,21 +424,26 @@ void RigidEncoder::choose_ease(Pending& update, CodedUpdate& coded, const Accele
 }
 
 /// The update of one object, and the state after it. A predictor other than the linear one counts as knowing the acceleration.
-/// A key packet is not eased: a client may begin with it, and has shown nothing of what the path would begin with.
+/// A key packet is not eased: a client may begin with it, and has shown nothing of what the path would begin with. So is what was out of
+/// interest.
 Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<RigidStates>& request) const noexcept {
-  const RigidState& base = request.base.objects[update.object];
-  const Prediction prediction{base, predictor_.pose(base, request.tick)};
   const std::uint32_t object = update.object;
-  if (!acceleration_ && !choice_) return quantise(update, prediction, truth_[object]);
-  const RigidTriggers bounds = widened_triggers();
-  const Predictor predictor = choice_ ? chosen(object, bounds) : Predictor::linear;
+  const RigidState& base = request.base.objects[object];
+  const Prediction prediction{base, predictor_.pose(base, request.tick)};
+  const RigidState truth = truth_of(object);
+  if (truth_.acceleration() == nullptr && !choice_) return quantise(update, prediction, truth);
+  const RigidTriggers bounds = widened_triggers(object);
+  const Predictor predictor = choice_ ? chosen(object, truth, bounds) : Predictor::linear;
   const bool is_linear = predictor == Predictor::linear;
-  const ErrorShare share(object, samples_[object].pose, contacts_, bounds, force_trend_ ? force_trend_->sinking(object) : 0);
-  const auto acceleration = acceleration_ && is_linear ? acceleration_->of(object) : Acceleration::Motion{};
-  RigidState told = is_linear ? leaned(object, acceleration, share) : truth_[object];
+  const ErrorShare share(object, truth_.samples()[object].pose, truth_.contacts(), bounds,
+                         truth_.force_trend() != nullptr ? truth_.force_trend()->sinking(object) : 0);
+  const bool leans = truth_.acceleration() != nullptr && is_linear;
+  const auto acceleration = leans ? truth_.acceleration()->of(object) : Acceleration::Motion{};
+  RigidState told = is_linear ? leaned(truth, object, acceleration, share) : truth;
   told.predictor = predictor;
   TACTUS_TRY(CodedUpdate coded, quantise(update, prediction, told));
-  if (acceleration_ && !request.head.key) choose_ease(update, coded, acceleration, share);
+  const bool is_shown = sent_[object].path.state.lod != kOutOfInterest;
+  if (truth_.acceleration() != nullptr && !request.head.key && is_shown) choose_ease(update, coded, acceleration, share);
   return coded;
 }
 
@@ -344,36 +451,36 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
 /// coarse for the permitted force error, the nearest place on it.
 Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction, const RigidState& told) const noexcept {
   const std::uint32_t object = update.object;
-  const RigidState& truth = truth_[object];
+  const RigidState& truth = truth_.state(object);
   const std::uint8_t dof = scene_.objects[object].dof;
   std::optional<CodedUpdate> finest;
-  const unsigned coarsest = triggers_.haptic == HapticRule::fixed && is_touched(object) ? fixed_.level : visual_.level;
+  const Bounds& bounds = bounds_of(object);
+  const bool is_fixed = triggers_.haptic == HapticRule::fixed && is_touched(object);
+  const unsigned coarsest = is_fixed ? bounds.fixed.level : bounds.visual.level;
   for (unsigned levels = coarsest + 1; levels > 0; --levels) {
     const unsigned level = levels - 1;
     CodedUpdate coded{.reason = update.reason,
                       .level = static_cast<std::uint8_t>(level),
                       .residual = quantise_pose(prediction.pose, truth, dof, level, scene_.grid),
-                      .predictor = static_cast<std::uint8_t>(told.predictor)};
+                      .predictor = static_cast<std::uint8_t>(told.predictor),
+                      .lod = static_cast<std::uint8_t>((lod_of(object) - prediction.base.lod) & 7)};
     if (told.predictor == Predictor::driven) tell_contact(prediction.base, told.contact, coded);
     quantise_motion(predictor_, prediction, told, dof, coded);
-    const auto state = reconstruct(predictor_, prediction, truth.tick, coded, scene_.grid);
+    const auto state = reconstruct(predictor_, prediction, truth_.tick(), coded, scene_.grid);
     if (!state) return fail(Errc::internal, "R-RIG-6");
     const RigidPose shown{state->position, state->rotation};
-    if (!within(visual_, shown, truth)) continue;
+    if (!within(bounds.visual, shown, truth)) continue;
     const double felt = haptic_ratio_of(object, shown);
-    if ((level > 0 || finest) && felt > widening_) continue;
-    update.state = *state;
-    if (felt <= kHapticShare * widening_) return coded;
+    if ((level > 0 || finest) && felt > bounds.widening) continue;
+    update.after.path.state = *state;
+    if (felt <= kHapticShare * bounds.widening) return coded;
     finest = coded;
   }
   if (!finest) return fail(Errc::invalid_argument, "R-API-7");
   return *finest;
 }
 
-Result<Payload> RigidEncoder::encode(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept {
-  collect(request);
-  number_ = request.number;
-  if (pending_.empty()) return Payload{};
+Result<Payload> RigidEncoder::code_all(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept {
   const auto moving = scene_.moving();
   RangeEncoder coder(out);
   RigidModels models = start_models();
@@ -388,34 +495,99 @@ Result<Payload> RigidEncoder::encode(const EncodeRequest<RigidStates>& request, 
     TACTUS_TRY(CodedUpdate coded, code(update, request));
     code_update(coder, models, scene_, update.object, coded);
     strongest = std::max(strongest, update.reason);
+    const RigidState state = update.after.path.state;
+    update.after.path = sent_[update.object].path;
+    update.after.path.follow(predictor_, state);
   }
   const std::size_t size = coder.finish();
   if (coder.overflow() || coder.too_wide()) return fail(Errc::internal, "R-PKT-1");
   return Payload{size, strongest, static_cast<std::uint32_t>(pending_.size())};
 }
 
-void RigidEncoder::commit(const RigidStates& base, RigidStates& next) noexcept {
-  if (&base != &next) std::copy(base.objects.begin(), base.objects.end(), next.objects.begin());
-  before_.clear();
+// ==== what is shared ====
+
+/// Not where a device drives objects: no other receiver has it.
+bool RigidEncoder::shares() const noexcept { return work_ != nullptr && !driven_ && pending_.size() <= RigidWork::kMostUpdates; }
+
+/// All that the payload depends on.
+void RigidEncoder::make_key(const EncodeRequest<RigidStates>& request) noexcept {
+  key_.clear();
+  const auto widening = std::bit_cast<std::array<std::uint32_t, 2>>(bounds_[0].widening);
+  for (const std::uint32_t word : {request.head.baseline_delta, request.head.tick_delta, request.head.key ? 1u : 0u,
+                                   loses_ ? 1u : 0u, widening[0], widening[1]})
+    key_.push_back(word);
   for (const Pending& update : pending_) {
-    next.objects[update.object] = update.state;
-    Sent& sent = sent_[update.object];
-    before_.emplace_back(update.object, sent);
-    const auto follow_ups = static_cast<std::uint8_t>(update.follow_up ? std::min(sent.follow_ups + 1, 255) : 0);
-    sent.path.follow(predictor_, update.state);
-    sent.number = number_;
-    sent.follow_ups = follow_ups;
-    sent.acknowledged = false;
+    const Sent& sent = sent_[update.object];
+    const std::uint64_t version = sent.path.state.lod == kOutOfInterest ? 0 : sent.version;  // what was not shown does not count
+    const std::uint64_t why = static_cast<std::uint64_t>(update.reason) | std::uint64_t{lod_of(update.object)} << 8;
+    for (const auto word : {std::uint64_t{update.object}, why, version, version >> 32})
+      key_.push_back(static_cast<std::uint32_t>(word));
+    append_to(key_, request.base.objects[update.object]);
   }
 }
 
+Payload RigidEncoder::copy(const RigidWork::Body& body, std::span<std::uint8_t> out) noexcept {
+  std::ranges::copy(body.bytes, out.begin());
+  for (std::size_t i = 0; i < pending_.size(); ++i) pending_[i].after = body.after[i];
+  return {body.bytes.size(), body.reason, static_cast<std::uint32_t>(pending_.size())};
+}
+
+Result<Payload> RigidEncoder::encode(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept {
+  take();
+  if (levels_) look();
+  choose_early();
+  collect(request);
+  number_ = request.number;
+  if (pending_.empty()) {
+    sleep();
+    return Payload{};
+  }
+  if (!shares()) {
+    const auto alone = code_all(request, out);
+    for (Pending& update : pending_) update.after.version = work_ != nullptr ? work_->next_version() : 0;
+    return alone;
+  }
+  make_key(request);
+  if (const RigidWork::Body* const known = work_->find(read_, key_)) return copy(*known, out);
+  const auto payload = code_all(request, out);
+  if (!payload) return payload;
+  after_.clear();
+  for (Pending& update : pending_) after_.push_back(&update.after);
+  work_->put(read_, key_, out.first(payload->size), payload->reason, after_);
+  return payload;
+}
+
+void RigidEncoder::commit(const RigidStates& base, RigidStates& next) noexcept {
+  if (&base != &next) next.objects = base.objects;
+  before_last_ = std::exchange(last_, truth_.tick());
+  before_.clear();
+  for (const Pending& update : pending_) {
+    next.objects.set(update.object, update.after.path.state);
+    Sent& sent = sent_[update.object];
+    before_.emplace_back(update.object, sent);
+    const auto follow_ups = static_cast<std::uint8_t>(update.follow_up ? std::min(sent.follow_ups + 1, 255) : 0);
+    sent = {.path = update.after.path,
+            .version = update.after.version,
+            .number = number_,
+            .follow_ups = follow_ups,
+            .acknowledged = false};
+    awake_.wake(update.object);
+  }
+  sleep();
+}
+
 void RigidEncoder::forget_last() noexcept {
-  for (const auto& [object, sent] : before_) sent_[object] = sent;
+  for (const auto& [object, sent] : before_) {
+    sent_[object] = sent;
+    awake_.wake(object);
+  }
+  last_ = before_last_;
   before_.clear();
 }
 
+/// What sleeps is acknowledged.
 void RigidEncoder::acknowledge(std::uint64_t number) noexcept {
-  for (Sent& sent : sent_) sent.acknowledged = sent.acknowledged || sent.number == number;
+  for (const std::uint32_t i : awake_.objects()) sent_[i].acknowledged = sent_[i].acknowledged || sent_[i].number == number;
   for (auto& [object, sent] : before_) sent.acknowledged = sent.acknowledged || sent.number == number;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/rigid/rigid_state.h>
 
+#include <algorithm>
+
 #include <tactus/base/bytes.h>
 #include <tactus/base/fixed.h>
 #include <tactus/base/quantise.h>
@@ -8,11 +10,10 @@
 
 namespace tactus {
 RigidStates initial_states(const Scene& scene) {
-  RigidStates out;
-  out.objects.reserve(scene.objects.size());
-  for (const RigidObject& object : scene.objects)
-    out.objects.push_back({.position = object.initial.position, .rotation = object.initial.rotation});
-  return out;
+  const std::size_t copies = std::max<std::size_t>(2, scene.baseline_span) + 1;
+  return {.tick = 0, .objects = PagedArray<RigidState>(scene.objects.size(), copies, [&scene](std::size_t i) {
+                       return initial_state(scene, i);
+                     })};
 }
 
 Result<RigidState> to_grid(const RigidSample& sample, std::int64_t tick, const GridExponents& grid) noexcept {
@@ -42,11 +43,13 @@ std::uint64_t state_hash(const Scene& scene, const RigidStates& states) noexcept
     for (const std::int32_t v : s.angular_velocity) hash.add32(v);
     if (scene.is_eased) hash.add32(s.ease + 8 * s.keep);
     if (scene.motion || scene.driven) hash.add32(static_cast<std::int32_t>(s.predictor));
-    if (!scene.driven) continue;
-    hash.add32(s.contact.is_held ? 1 : 0);
-    for (const std::int32_t v : s.contact.point) hash.add32(v);
-    for (const std::int32_t v : s.contact.normal) hash.add32(v);
-    hash.add32(s.contact.drag);
+    if (scene.driven) {
+      hash.add32(s.contact.is_held ? 1 : 0);
+      for (const std::int32_t v : s.contact.point) hash.add32(v);
+      for (const std::int32_t v : s.contact.normal) hash.add32(v);
+      hash.add32(s.contact.drag);
+    }
+    if (scene.interest) hash.add32(s.lod);
   }
   return hash.value();
 }

@@ -4,9 +4,9 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include <tactus/base/geometry.h>
+#include <tactus/base/paged_array.h>
 #include <tactus/base/result.h>
 #include <tactus/scene/scene.h>
 
@@ -37,6 +37,9 @@ struct DrivenContact {
   friend bool operator==(const DrivenContact&, const DrivenContact&) = default;
 };
 
+/// Level of detail of an object that the client is not told of. spec/40-rigid.md section 1.1
+inline constexpr std::uint8_t kOutOfInterest = 7;
+
 /// Integer pose and motion of one rigid object at one tick. This is all that a decoder keeps per object.
 struct RigidState {
   std::int64_t tick = 0;
@@ -47,6 +50,7 @@ struct RigidState {
   Predictor predictor = Predictor::linear;
   std::uint8_t ease = 0;    ///< clients pass over to this path within 2^ease ticks; 0: at once (curve.h)
   std::uint8_t keep = 0;    ///< ... and begin with 16, 15, 12 or 8 sixteenths of what they were off it
+  std::uint8_t lod = 0;     ///< level of detail: bounds are 2^lod times as wide; kOutOfInterest: none holds
   DrivenContact contact{};  ///< of the newest update that was driven
   friend bool operator==(const RigidState&, const RigidState&) = default;
 };
@@ -55,11 +59,16 @@ inline constexpr std::int32_t kAngularVelocityLimit = 1 << 25;
 
 /// The states of all objects of a scene after a packet.
 struct RigidStates {
-  std::int64_t tick = 0;            ///< of the packet
-  std::vector<RigidState> objects;  ///< order of Scene::objects
+  std::int64_t tick = 0;           ///< of the packet
+  PagedArray<RigidState> objects;  ///< order of Scene::objects
 };
 
-/// All objects at rest where the scene declares them.   allocates
+/// At rest where the scene declares it.
+inline RigidState initial_state(const Scene& scene, std::size_t object) noexcept {
+  const RigidPose& initial = scene.objects[object].initial;
+  return {.position = initial.position, .rotation = initial.rotation, .lod = scene.interest ? kOutOfInterest : std::uint8_t{0}};
+}
+/// All objects at rest where the scene declares them; room for as many states as an end keeps.   allocates
 RigidStates initial_states(const Scene& scene);
 
 /// SI sample to grid.

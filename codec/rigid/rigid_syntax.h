@@ -42,6 +42,7 @@ struct RigidModels {
   std::array<ResidualModels, 2> residual;  // position and velocity; rotation and angular velocity
   std::array<TreeModel<2>, 8> predictor;   // by reason; in driven scenes by 4 + reason
   std::array<MagnitudeModel, 3> contact;   // of point, normal and drag
+  TreeModel<3> lod;
 };
 
 /// Start probabilities, spec/40-rigid.md table 2.
@@ -62,6 +63,7 @@ struct CodedUpdate {
   std::uint8_t ease = 0, keep = 0;  ///< as in RigidState; 0 in a scene that is not eased
   Residual residual;
   std::uint8_t predictor = 0;
+  std::uint8_t lod = 0;                   ///< less that of the baseline, modulo 8
   bool is_held = false;                   ///< driven: as in DrivenContact
   std::array<std::int32_t, 7> contact{};  ///< driven: differences of point, normal and drag from those of the baseline
 };
@@ -130,6 +132,7 @@ void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uin
   const std::uint8_t dof = scene.objects[object].dof;
   update.reason = static_cast<Reason>(coder.template tree<2>(models.reason, static_cast<std::uint32_t>(update.reason)));
   update.level = static_cast<std::uint8_t>(coder.template tree<4>(models.level, update.level));
+  if (scene.interest) update.lod = static_cast<std::uint8_t>(coder.template tree<3>(models.lod, update.lod));
   if (scene.is_eased) {
     const std::uint32_t usual = usual_ease(scene.tick_rate);
     update.ease = static_cast<std::uint8_t>((usual - coder.template tree<3>(models.ease, (usual - update.ease) & 7u)) & 7u);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/rigid/trigger.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ double haptic_ratio(const RigidTriggers& triggers, const Vec3& truth, const Vec3
   if (force < triggers.force_floor || estimated < triggers.force_floor) return magnitude;
   const double cosine = dot(truth, estimate);
   const double sine = norm(cross(truth, estimate));
-  const double direction = std::atan2(sine, cosine) / triggers.cone_angle;
+  const double direction = angle_of(sine, cosine) / triggers.cone_angle;
   return std::max(magnitude, direction);
 }
 
@@ -43,7 +44,7 @@ double perceptual_fraction(double force) noexcept {
 }
 
 double isotropic_angle(double weber_fraction) noexcept {
-  return weber_fraction < 1 ? std::asin(weber_fraction) : std::numbers::pi;
+  return weber_fraction < 1 ? arc_sine(weber_fraction) : std::numbers::pi;
 }
 
 }  // namespace tactus

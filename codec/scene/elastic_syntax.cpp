@@ -10,6 +10,7 @@
 #include <tactus/base/fixed.h>
 #include <tactus/base/rule.h>
 #include <tactus/base/tri_mesh.h>
+#include <tactus/elastic/elastic_elements.h>
 #include <tactus/scene/scene_objects.h>
 #include <tactus/scene/scene_rules.h>
 
@@ -160,10 +161,15 @@ Result<StreamBounds> parse_bounds(ByteReader& in, const SceneSpec& spec) {
 namespace {
 
 constexpr std::uint32_t kNoVertex = 0xffffffff;
+constexpr auto kMostMethod = static_cast<std::uint8_t>(ElasticBody::Method::velocity_verlet);
 
 bool can_have_body(const DeformableObject& object) noexcept {
   return object.profile == DeformableProfile::main && !object.layered && object.frame_period % 256 == 0 &&
          object.frame_period <= 256 * ElasticBody::kMostTicks;
+}
+
+bool are_sub_steps(const ElasticBody& body) noexcept {
+  return body.method == ElasticBody::Method::velocity_verlet ? body.sub_steps >= 1 : body.sub_steps == 1;
 }
 
 bool are_constants(const ElasticBody& body) noexcept {
@@ -177,7 +183,7 @@ bool are_materials(const ElasticBody& body) noexcept {
   const auto size = [](double v) { return v > 0 && v <= ElasticBody::kLargest; };
   return !body.materials.empty() && body.materials.size() <= ElasticBody::kMaxMaterials &&
          std::ranges::all_of(body.materials, [&](const ElasticMaterial& m) {
-           return size(m.young) && size(m.density) && m.poisson > -1 && m.poisson < 0.5;
+           return size(m.young) && size(m.density) && m.poisson > -1 && m.poisson <= ElasticBody::kMostPoisson;
          });
 }
 
@@ -247,8 +253,12 @@ Result<void> parse_material_runs(ByteReader& in, ElasticBody& body) {
   return {};
 }
 
-Result<void> parse_body(ByteReader& in, DeformableObject& object) {
+Result<void> parse_body(ByteReader& in, ElasticBody::Method method, DeformableObject& object) {
   ElasticBody& body = object.body.emplace();
+  body.method = method;
+  if (method == ElasticBody::Method::velocity_verlet) body.sub_steps = in.u8();
+  if (!in.ok()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
+  if (!are_sub_steps(body)) return fail(Errc::invalid, "R-ELA-5", in.bit_offset());
   TACTUS_CHECK(parse_constants(in, body));
   const std::uint64_t inner = in.varint(), tets = in.varint();
   if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
@@ -264,6 +274,7 @@ Result<void> parse_body(ByteReader& in, DeformableObject& object) {
 }
 
 void write_body(ByteWriter& out, const ElasticBody& body) {
+  if (body.method == ElasticBody::Method::velocity_verlet) out.u8(body.sub_steps);
   for (const double v :
        {body.mass_damping, body.stiffness_damping, body.gravity.x, body.gravity.y, body.gravity.z, body.coupling, body.friction})
     write_number(out, v);
@@ -300,7 +311,9 @@ bool has_elastic_body(std::span<const DeformableObject> objects) noexcept {
 
 RuleName broken_elastic_rule(const DeformableObject& object) noexcept {
   if (!object.body) return {};
-  if (!can_have_body(object)) return "R-ELA-1";
+  const auto method = static_cast<std::uint8_t>(object.body->method);
+  if (!can_have_body(object) || method < 1 || method > kMostMethod) return "R-ELA-1";
+  if (!are_sub_steps(*object.body)) return "R-ELA-5";
   if (!are_constants(*object.body) || !are_materials(*object.body)) return "R-ELA-2";
   if (!are_tets(object)) return "R-ELA-3";
   return {};
@@ -324,21 +337,28 @@ bool is_solid(const DeformableObject& object, unsigned position_exp) {
   return std::ranges::find(is_held, 0) == is_held.end();
 }
 
+bool steps_stably(const DeformableObject& object, unsigned position_exp, std::uint32_t tick_rate) {
+  if (object.body->method != ElasticBody::Method::velocity_verlet) return true;
+  const std::uint32_t ticks = object.frame_period / 256;
+  const double step = static_cast<double>(ticks) / tick_rate;
+  return is_stable(*object.body, elastic_rest(object, position_exp), step);
+}
+
 void write_elastic(ByteWriter& out, std::span<const DeformableObject> objects) {
   for (const DeformableObject& object : objects) {
-    out.u8(object.body ? 1 : 0);
+    out.u8(object.body ? static_cast<std::uint8_t>(object.body->method) : 0);
     if (object.body) write_body(out, *object.body);
   }
 }
 
 Result<void> parse_elastic(ByteReader& in, std::span<DeformableObject> objects, unsigned position_exp) {
   for (DeformableObject& object : objects) {
-    const std::uint8_t has_body = in.u8();
+    const std::uint8_t method = in.u8();
     if (!in.ok()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
-    if (has_body > 1) return fail(Errc::malformed, "R-ELA-1", in.bit_offset());
-    if (has_body == 0) continue;
+    if (method > kMostMethod) return fail(Errc::malformed, "R-ELA-1", in.bit_offset());
+    if (method == 0) continue;
     if (!can_have_body(object)) return fail(Errc::invalid, "R-ELA-1", in.bit_offset());
-    TACTUS_CHECK(parse_body(in, object));
+    TACTUS_CHECK(parse_body(in, static_cast<ElasticBody::Method>(method), object));
     if (!is_solid(object, position_exp)) return fail(Errc::invalid, "R-ELA-4", in.bit_offset());
   }
   if (!has_elastic_body(objects)) return fail(Errc::invalid, "R-ELA-1", in.bit_offset());

@@ -42,6 +42,9 @@ RuleName broken_elastic_rule(const DeformableObject& object) noexcept;
 /// time O(tets); allocates
 bool is_solid(const DeformableObject& object, unsigned position_exp);
 
+/// Of a body that breaks no other rule: velocity Verlet is stable with its sub-steps (R-ELA-5).   time 1 us per tetrahedron; allocates
+bool steps_stably(const DeformableObject& object, unsigned position_exp, std::uint32_t tick_rate);
+
 /// Of all deformable objects.   pre  one has a body
 void write_elastic(ByteWriter& out, std::span<const DeformableObject> objects);
 /// Allocates in proportion to the bytes received.

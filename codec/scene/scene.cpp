@@ -10,7 +10,8 @@
 #include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
 #include <tactus/deformable/basis.h>
-#include <tactus/elastic/elastic_solver.h>
+#include <tactus/deformable/graph.h>
+#include <tactus/elastic/elastic_elements.h>
 #include <tactus/scene/elastic_syntax.h>
 #include <tactus/scene/scene_rules.h>
 
@@ -69,21 +70,23 @@ RuleName broken_parameter_rule(const SceneSpec& spec) noexcept {
   return {};
 }
 
+static bool moves(const SceneSpec& spec) noexcept {
+  return std::ranges::any_of(spec.objects, [](const RigidObject& object) { return object.dof != Dof::none; });
+}
+
 RuleName broken_load_rule(const SceneSpec& spec) noexcept {
   if (!spec.loads) return {};
-  const bool moves = std::ranges::any_of(spec.objects, [](const RigidObject& object) { return object.dof != Dof::none; });
   const bool fits = spec.loads->force_exp <= LoadSpec::kMostExponent && spec.loads->users <= LoadSpec::kMostUsers;
-  return moves && fits ? RuleName{} : RuleName{"R-STR-19"};
+  return moves(spec) && fits ? RuleName{} : RuleName{"R-STR-19"};
 }
 
 RuleName broken_motion_rule(const SceneSpec& spec) noexcept {
   if (!spec.motion) return {};
   constexpr std::int32_t kMost = MotionConstants::kMost;
   const MotionConstants& motion = *spec.motion;
-  const bool moves = std::ranges::any_of(spec.objects, [](const RigidObject& object) { return object.dof != Dof::none; });
   const bool fits = std::ranges::all_of(motion.gravity, [](std::int32_t g) { return g >= -kMost && g <= kMost; }) &&
                     motion.slide_deceleration >= 0 && motion.slide_deceleration <= kMost;
-  return moves && fits && motion != MotionConstants{} ? RuleName{} : RuleName{"R-STR-22"};
+  return moves(spec) && fits && motion != MotionConstants{} ? RuleName{} : RuleName{"R-STR-22"};
 }
 
 RuleName broken_driven_rule(const SceneSpec& spec) noexcept {
@@ -99,6 +102,12 @@ RuleName broken_driven_rule(const SceneSpec& spec) noexcept {
             std::ranges::all_of(body.inertia, fits);
   }
   return any && sound ? RuleName{} : RuleName{"R-STR-23"};
+}
+
+RuleName broken_interest_rule(const SceneSpec& spec) noexcept {
+  if (!spec.interest) return {};
+  const auto [full, reach] = *spec.interest;
+  return moves(spec) && full >= 1 && full <= reach && reach <= Interest::kMost ? RuleName{} : RuleName{"R-STR-25"};
 }
 
 namespace {
@@ -124,10 +133,13 @@ Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits)
   if (const RuleName rule = broken_load_rule(spec)) return fail(Errc::invalid, rule);
   if (const RuleName rule = broken_motion_rule(spec)) return fail(Errc::invalid, rule);
   if (const RuleName rule = broken_driven_rule(spec)) return fail(Errc::invalid, rule);
+  if (const RuleName rule = broken_interest_rule(spec)) return fail(Errc::invalid, rule);
   if (spec.bounds && !are_bounds(spec)) return fail(Errc::invalid, "R-STR-17");
   if (state_bytes(spec) > limits.state_bytes) return fail(Errc::limit_exceeded, "R-STR-18");
   if (basis_work(spec) > limits.basis_work) return fail(Errc::limit_exceeded, "R-STR-21");
   if (elastic_work(spec) > limits.elastic_work) return fail(Errc::limit_exceeded, "R-STR-24");
+  for (const DeformableObject& object : spec.deformables)
+    if (object.body && !steps_stably(object, spec.grid.position, spec.tick_rate)) return fail(Errc::invalid, "R-ELA-5");
   return {};
 }
 
@@ -145,6 +157,8 @@ Scene::Scene(SceneSpec&& spec) : SceneSpec(std::move(spec)), has_paths_(driven |
   for (DeformableObject& object : deformables) {
     if (object.spring_basis.modes > 0) object.basis = spring_basis(object);
     if (object.cluster_basis.count > 0) object.basis = cluster_basis(object);
+    const bool is_main = object.profile == DeformableProfile::main;
+    hierarchies_.push_back(is_main ? std::make_shared<const VertexHierarchy>(vertex_hierarchy(object)) : nullptr);
   }
 }
 
@@ -186,7 +200,7 @@ std::uint64_t basis_work(const SceneSpec& spec) noexcept {
 std::uint64_t elastic_work(const SceneSpec& spec) {
   std::uint64_t sum = 0;
   for (const DeformableObject& object : spec.deformables)
-    if (object.body) sum += elastic_work(elimination(*object.body, object.rest.size() + object.body->inner.size()));
+    if (object.body) sum += elastic_work(*object.body, object.rest.size() + object.body->inner.size());
   return sum;
 }
 

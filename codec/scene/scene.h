@@ -65,6 +65,14 @@ struct DrivenConstants {
   friend bool operator==(const DrivenConstants&, const DrivenConstants&) = default;
 };
 
+/// Within which distances a client is told of rigid objects. spec/40-rigid.md section 1.1
+struct Interest {
+  static constexpr std::uint32_t kMost = 0x7fffffff;
+  std::uint32_t full = 1;   ///< x 2^-position m: so far away in full; at twice the distance bounds are twice as wide
+  std::uint32_t reach = 1;  ///< x 2^-position m, full..kMost: not at all beyond
+  friend bool operator==(const Interest&, const Interest&) = default;
+};
+
 struct SceneSpec {
   std::uint32_t tick_rate = 1000;  ///< ticks per second, 1 .. 1 000 000
   GridExponents grid;
@@ -76,6 +84,7 @@ struct SceneSpec {
   std::optional<LoadSpec> loads;              ///< of the objects that can move; none: a stream spends no byte on them
   std::optional<MotionConstants> motion;      ///< of the objects that can move; none: their velocities alone predict them
   std::optional<DrivenConstants> driven;      ///< of objects that a client's device moves; none: it predicts nothing
+  std::optional<Interest> interest;           ///< of clients in rigid objects; none: they are told of all, in full
   std::optional<StreamBounds> bounds;         ///< error bounds that the sender guarantees; none: not declared
 };
 
@@ -92,10 +101,12 @@ struct DecodeLimits {
   std::uint64_t elastic_work = 1ull << 30;  ///< of all elastic bodies: thin ones of 10 000 vertices, or a cube of 1300
 };
 
+struct VertexHierarchy;
+
 /// A checked scene, its spring bases computed. Never changes after it is made, so that threads may share it.
 class Scene : public SceneSpec {
  public:
-  /// time 80 ms more for a basis of 48 modes of 700 vertices, 160 ms of 50 000
+  /// time 1 us per vertex; 80 ms more for a basis of 48 modes of 700 vertices, 160 ms of 50 000
   /// err  invalid, limit_exceeded, with the R-STR or R-DEF rule that the declaration breaks
   static Result<std::shared_ptr<const Scene>> create(SceneSpec spec, const DecodeLimits& limits = {});
 
@@ -105,6 +116,11 @@ class Scene : public SceneSpec {
   /// Rigid objects that can move, ascending: the only ones that packets name.
   std::span<const std::uint32_t> moving() const noexcept { return moving_; }
 
+  /// Order and parents of the vertices of a deformable object of profile main, for all who code it.   pre  it is one of this scene
+  const std::shared_ptr<const VertexHierarchy>& hierarchy(const DeformableObject& object) const noexcept {
+    return hierarchies_[static_cast<std::size_t>(&object - deformables.data())];
+  }
+
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
@@ -112,6 +128,7 @@ class Scene : public SceneSpec {
   explicit Scene(SceneSpec&& spec);
 
   std::vector<std::uint32_t> moving_;
+  std::vector<std::shared_ptr<const VertexHierarchy>> hierarchies_;  // by deformable object; null: profile thesis
   bool has_paths_ = false;
 };
 

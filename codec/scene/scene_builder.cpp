@@ -8,7 +8,7 @@
 
 #include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
-#include <tactus/elastic/elastic_solver.h>
+#include <tactus/elastic/elastic_elements.h>
 #include <tactus/scene/scene_rules.h>
 
 namespace tactus {
@@ -71,6 +71,15 @@ Result<std::optional<MotionConstants>> constants_of(const MotionPhysics& physics
   const MotionConstants out{{units(physics.gravity.x), units(physics.gravity.y), units(physics.gravity.z)}, units(deceleration)};
   if (out == MotionConstants{}) return std::nullopt;
   return out;
+}
+
+/// err  invalid_argument R-API-4 a distance is not positive or beyond the grid, or `reach` is below `full`
+Result<std::optional<Interest>> interest_of(const std::optional<std::array<double, 2>>& distances, unsigned position_exp) {
+  if (!distances) return std::nullopt;
+  const auto [full, reach] = *distances;
+  const double unit = std::ldexp(1.0, -static_cast<int>(position_exp));
+  if (!(full >= unit && full <= reach && reach <= unit * Interest::kMost)) return fail(Errc::invalid_argument, "R-API-4");
+  return Interest{static_cast<std::uint32_t>(full / unit), static_cast<std::uint32_t>(reach / unit)};
 }
 
 /// Nothing: a constant cannot be told.
@@ -155,6 +164,11 @@ SceneBuilder& SceneBuilder::motion(const MotionPhysics& physics) {
   return *this;
 }
 
+SceneBuilder& SceneBuilder::interest(double full, double reach) {
+  interest_ = {full, reach};
+  return *this;
+}
+
 bool SceneBuilder::can_drive(const DrivenPhysics& physics, std::uint32_t tick_rate) noexcept {
   return body_of(physics, tick_rate).has_value();
 }
@@ -172,7 +186,13 @@ SceneBuilder& SceneBuilder::elastic(ElasticPhysics physics) {
 }
 
 bool SceneBuilder::can_work_out(const ElasticPhysics& physics, std::size_t vertices) {
-  return elastic_work(elimination(physics.body, vertices + physics.inner.size())) <= DecodeLimits().elastic_work;
+  return elastic_work(physics.body, vertices + physics.inner.size()) <= DecodeLimits().elastic_work;
+}
+
+bool SceneBuilder::steps_stably(const ElasticPhysics& physics, std::span<const Vec3> surface, double step) {
+  std::vector<Vec3> rest(surface.begin(), surface.end());
+  rest.insert(rest.end(), physics.inner.begin(), physics.inner.end());
+  return is_stable(physics.body, rest, step);
 }
 
 SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const DeformableThresholds& deformables,
@@ -181,7 +201,7 @@ SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const Deformable
   return *this;
 }
 
-tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
+tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& limits) try {
   const auto refuse = [](const Error& error, std::string object) {
     return tl::make_unexpected(SceneFinding{error, std::move(object)});
   };
@@ -194,6 +214,8 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
   if (const RuleName rule = broken_parameter_rule(spec)) return refuse({Errc::invalid, rule, 0}, {});  // before the grid is used
   const auto constants = constants_of(taken.motion_, spec.grid);
   if (!constants) return refuse(constants.error(), {});
+  const auto interest = interest_of(taken.interest_, spec.grid.position);
+  if (!interest) return refuse(interest.error(), {});
   std::unordered_set<std::string> names;
   for (Rigid& object : taken.rigid_) {
     const auto initial = to_grid(object.initial, spec.grid.position);
@@ -211,6 +233,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     }
     if (made.dof == Dof::none) continue;
     spec.motion = *constants;
+    spec.interest = *interest;
     spec.is_eased = taken.rigid_profile_ == RigidProfile::main;
   }
   if (taken.promise_ && !are_fractions(*taken.promise_)) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});
@@ -231,7 +254,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     spec.deformables.push_back(std::move(*object));
   }
   if (taken.promise_) spec.bounds = bounds_of(spec, taken.promise_->rigid, taken.promise_->deformables, taken.promise_->loads);
-  auto scene = Scene::create(std::move(spec));
+  auto scene = Scene::create(std::move(spec), limits);
   if (!scene) return refuse(scene.error(), {});
   return *scene;
 } catch (const std::bad_alloc&) {

@@ -2,6 +2,7 @@
 /// A scene from SI units.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -99,12 +100,19 @@ class SceneBuilder {
   SceneBuilder& elastic(ElasticPhysics physics);
   /// Whether every client accepts a body with so many vertices on its surface: about 10 000 in all if it is thin, 1300 of a cube.
   static bool can_work_out(const ElasticPhysics& physics, std::size_t vertices);
+  /// Whether velocity Verlet is stable in the body's sub-steps, with steps of `step` [s] (R-ELA-5); true of the other methods.
+  /// in   surface  [m] its vertices at rest.   pre  the body breaks no other rule
+  static bool steps_stably(const ElasticPhysics& physics, std::span<const Vec3> surface, double step);
+  /// Let clients be told by distance [m]: of rigid objects within `full` of where a client looks from in full, with bounds twice as wide at
+  /// twice the distance, and not at all of those beyond `reach`. For worlds that are larger than what one sees of them.
+  SceneBuilder& interest(double full, double reach);
   /// Declare the bounds that hold at a client that gets every packet.
   SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
 
   /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface or stiffness does not fit its grid; R-API-14 driven()
   ///      before any rigid object or elastic() before any deformable one; those of Scene::create
-  tl::expected<SharedScene, SceneFinding> build();
+  /// in   limits  those of the receivers: larger than usual for a scene of more than 4096 objects, say
+  tl::expected<SharedScene, SceneFinding> build(const DecodeLimits& limits = {});
 
  private:
   struct Rigid {
@@ -123,6 +131,7 @@ class SceneBuilder {
   SceneSpec spec_;
   std::optional<double> extrapolation_;  // [s]
   MotionPhysics motion_;
+  std::optional<std::array<double, 2>> interest_;  // full and reach [m]
   RigidProfile rigid_profile_ = RigidProfile::main;
   std::vector<Rigid> rigid_;
   std::vector<Deformable> deformables_;

@@ -131,7 +131,12 @@ struct ElasticBody {
   using Tet = std::array<std::uint32_t, 4>;
   static constexpr std::size_t kMaxMaterials = 255;
   static constexpr double kLargest = 1e15;           ///< of any constant
+  static constexpr double kMostPoisson = 0.4999;     ///< beyond, a fixed number of iterations is not enough
   static constexpr std::uint32_t kMostTicks = 1024;  ///< of a frame
+  static constexpr std::uint8_t kMostSubSteps = 255;
+
+  /// Of a step, spec/55-elastic.md section 5.2: values on the wire.
+  enum class Method : std::uint8_t { backward_euler = 1, tr_bdf2 = 2, velocity_verlet = 3 };
 
   /// At rest, x 2^-position_exp m. Their numbers follow those of the object's vertices.
   std::vector<std::array<std::int32_t, 3>> inner;
@@ -144,6 +149,8 @@ struct ElasticBody {
   Vec3 gravity{};                          ///< [m/s^2]
   double coupling = 0;                     ///< [N/m] between device and proxy, above 0
   double friction = 0;                     ///< of the proxy on the surface
+  Method method = Method::backward_euler;
+  std::uint8_t sub_steps = 1;  ///< of velocity_verlet, which is stable with them; 1 of the others
   friend bool operator==(const ElasticBody&, const ElasticBody&) = default;
 };
 

@@ -33,6 +33,7 @@ RuleName broken_deformable_rule(const DeformableObject& object) noexcept;
 RuleName broken_load_rule(const SceneSpec& spec) noexcept;
 RuleName broken_motion_rule(const SceneSpec& spec) noexcept;
 RuleName broken_driven_rule(const SceneSpec& spec) noexcept;
+RuleName broken_interest_rule(const SceneSpec& spec) noexcept;
 
 // ==== vertex syntax ====
 // Vertices in a scene declaration: where they rest, and which of them are fixed. spec/20-scene.md section 4.

@@ -19,9 +19,9 @@ constexpr std::array<std::uint8_t, 4> kMagic{0x89, 'T', 'C', 'T'};
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kRigid = 1;
 constexpr std::uint8_t kProfile = 0;
-constexpr std::uint16_t kHasDeformables = 1, kHasLoads = 2, kIsEased = 4, kHasMotion = 8, kIsDriven = 16,
-                        kIsElastic = 32;  // flags
-constexpr std::size_t kFixedSize = 12;    // magic, version, profile, flags, body_size
+constexpr std::uint16_t kHasDeformables = 1, kHasLoads = 2, kIsEased = 4, kHasMotion = 8, kIsDriven = 16, kIsElastic = 32,
+                        kHasInterest = 64;  // flags
+constexpr std::size_t kFixedSize = 12;      // magic, version, profile, flags, body_size
 
 Result<RigidObject> parse_object(ByteReader& body) {
   const std::uint64_t start = body.bit_offset();
@@ -107,6 +107,16 @@ Result<void> parse_driven(ByteReader& body, SceneSpec& spec) {
   return {};
 }
 
+Result<void> parse_interest(ByteReader& body, SceneSpec& spec) {
+  const std::uint64_t start = body.bit_offset();
+  Interest& interest = spec.interest.emplace();
+  interest.full = body.u32();
+  interest.reach = body.u32();
+  if (!body.ok()) return fail(Errc::truncated, "R-STR-5", body.bit_offset());
+  if (const RuleName rule = broken_interest_rule(spec)) return fail(Errc::invalid, rule, start);
+  return {};
+}
+
 void write_driven(ByteWriter& b, const Scene& scene) {
   for (const std::uint32_t i : scene.moving()) {
     b.u32(scene.driven->bodies[i].coupling);
@@ -144,6 +154,7 @@ Result<SceneSpec> parse_body(ByteReader body, std::uint16_t flags, const DecodeL
   if (flags & kHasMotion) TACTUS_CHECK(parse_motion(body, spec));
   if (flags & kIsDriven) TACTUS_CHECK(parse_driven(body, spec));
   if (flags & kIsElastic) TACTUS_CHECK(parse_elastic(body, spec.deformables, spec.grid.position));
+  if (flags & kHasInterest) TACTUS_CHECK(parse_interest(body, spec));
   TACTUS_CHECK(parse_extensions(body, spec));
   return spec;
 }
@@ -181,6 +192,10 @@ Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
   }
   if (scene.driven) write_driven(b, scene);
   if (has_elastic_body(scene.deformables)) write_elastic(b, scene.deformables);
+  if (scene.interest) {
+    b.u32(scene.interest->full);
+    b.u32(scene.interest->reach);
+  }
   if (scene.bounds) {
     const auto bounds = write_bounds(*scene.bounds);
     b.varint(kBoundsRecord);
@@ -198,7 +213,8 @@ Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
   w.u8(kProfile);
   w.u16(static_cast<std::uint16_t>((scene.deformables.empty() ? 0 : kHasDeformables) | (scene.loads ? kHasLoads : 0) |
                                    (scene.is_eased ? kIsEased : 0) | (scene.motion ? kHasMotion : 0) |
-                                   (scene.driven ? kIsDriven : 0) | (has_elastic_body(scene.deformables) ? kIsElastic : 0)));
+                                   (scene.driven ? kIsDriven : 0) | (has_elastic_body(scene.deformables) ? kIsElastic : 0) |
+                                   (scene.interest ? kHasInterest : 0)));
   w.u32(static_cast<std::uint32_t>(body.size()));
   w.bytes(body);
   w.u32(crc32(out));
@@ -220,7 +236,7 @@ Result<ParsedScene> parse_scene(std::span<const std::uint8_t> bytes, const Decod
   if (version != kVersion) return fail(Errc::unsupported, "R-STR-2", 32);
   if (profile > kProfile + 1) return fail(Errc::malformed, "R-STR-3", 40);
   if (profile != kProfile) return fail(Errc::unsupported, "R-STR-3", 40);
-  constexpr std::uint16_t kAll = kHasDeformables | kHasLoads | kIsEased | kHasMotion | kIsDriven | kIsElastic;
+  constexpr std::uint16_t kAll = kHasDeformables | kHasLoads | kIsEased | kHasMotion | kIsDriven | kIsElastic | kHasInterest;
   if (flags > kAll) return fail(Errc::malformed, "R-STR-4", 48);
   if (body_size > limits.header_bytes) return fail(Errc::limit_exceeded, "R-STR-14", 64);
   ByteReader body = in.sub(body_size);

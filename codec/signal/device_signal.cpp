@@ -85,7 +85,7 @@ DeviceSample device_of(const Scene& scene, const RigidState& state, std::int64_t
 }
 
 DeviceSample device_at(Receiver& receiver, std::int64_t tick, std::uint32_t buttons) noexcept {
-  const RigidState& state = receiver.objects()[0];
+  const RigidState& state = receiver.object(0);
   return device_of(*receiver.scene(), state, std::max(tick, state.tick), buttons);
 }
 
