@@ -76,6 +76,11 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
 # Scripts of lab/ are Python, their figures matplotlib's.
 set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS "python3, python3-numpy, python3-matplotlib")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "tetgen")
+# The user of tactus@.service; where there is no systemd, nobody needs it.
+file(CONFIGURE OUTPUT postinst CONTENT "#!/bin/sh\nset -e\nif [ configure = \"$1\" ] && command -v systemd-sysusers >/dev/null; then systemd-sysusers tactus.conf; fi\n" @ONLY)
+set(everybody OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+file(CHMOD ${PROJECT_BINARY_DIR}/postinst PERMISSIONS ${everybody})
+set(CPACK_DEBIAN_TOOLS_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/postinst)
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Codec for shared haptic environments, command line
  Simulates touches, encodes them into packets, decodes them and measures the
  error; records haptic devices and runs sessions over a network.")
@@ -85,7 +90,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy, libtactus${PROJECT_VERSION_MAJOR} (>= ${PROJECT_VERSION})")
 file(CONFIGURE OUTPUT prerm CONTENT "#!/bin/sh\nset -e\npy3clean -p python3-tactus\n" @ONLY)
-file(CHMOD ${PROJECT_BINARY_DIR}/prerm PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+file(CHMOD ${PROJECT_BINARY_DIR}/prerm PERMISSIONS ${everybody})
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/prerm)
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Codec for shared haptic environments, Python package
  Traces, streams and reports as arrays of NumPy.")

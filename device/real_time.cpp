@@ -62,7 +62,7 @@ RealTime::RealTime() : latency_(open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXE
   const bool is_first = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
   privileges_.push_back({"real-time priority", is_first,
                          is_first ? "" : "allow it: `ulimit -r 80`, or the line `@audio - rtprio 80` in /etc/security/limits.d"});
-  const bool is_locked = may_lock_all() && mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+  const bool is_locked = may_lock_all() && mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;  // not what is only reserved
   privileges_.push_back(
       {"memory locked", is_locked,
        is_locked ? "" : "allow it: `ulimit -l unlimited`, or `@audio - memlock unlimited` in /etc/security/limits.d"});

@@ -16,21 +16,17 @@ namespace tactus {
 
 // ==== timelines ====
 
-Timelines::Timelines(std::size_t objects)
-    : updates_(objects == 0 ? 0 : objects + std::clamp<std::size_t>(128 * objects, 4096, 32768)),
-      first_(objects),
-      last_(objects) {}
+Timelines::Timelines(std::size_t objects) : first_(objects), last_(objects) {
+  if (objects > 0) updates_.reserve(objects + std::clamp<std::size_t>(128 * objects, 4096, 32768));
+}
 
-void Timelines::reset(std::span<const RigidObject> objects) noexcept {
+void Timelines::reset(const Scene& scene) noexcept {
+  updates_.clear();
   for (std::size_t i = 0; i < first_.size(); ++i) {
-    updates_[i] = {.number = 0, .state = {.position = objects[i].initial.position, .rotation = objects[i].initial.rotation}};
+    updates_.push_back({.number = 0, .state = initial_state(scene, i)});
     first_[i] = last_[i] = static_cast<Index>(i);
   }
   free_ = kNone;
-  for (std::size_t i = updates_.size(); i > first_.size(); --i) {
-    updates_[i - 1].next = free_;
-    free_ = static_cast<Index>(i - 1);
-  }
   newest_ = 0;
 }
 
@@ -53,17 +49,25 @@ void Timelines::make_room() noexcept {
     for (std::uint32_t i = 0; i < first_.size(); ++i) trim(i, newest_ - span / 2);
 }
 
+Timelines::Index Timelines::take() noexcept {
+  if (free_ == kNone && updates_.size() < updates_.capacity()) {
+    updates_.emplace_back();
+    return static_cast<Index>(updates_.size() - 1);
+  }
+  if (free_ == kNone) make_room();
+  return std::exchange(free_, updates_[free_].next);
+}
+
 void Timelines::add(std::uint32_t object, std::uint64_t number, const RigidState& state) noexcept {
   newest_ = std::max(newest_, state.tick);
   trim(object, newest_ - kept_);
   swept_ = (swept_ + 1) % static_cast<std::uint32_t>(first_.size());
   trim(swept_, newest_ - kept_);
-  if (free_ == kNone) make_room();
+  const Index at = take();
   Index before = last_[object];
   const auto is_later = [&](const Update& u) { return std::tie(u.state.tick, u.number) > std::tie(state.tick, number); };
   while (before != kNone && is_later(updates_[before])) before = updates_[before].previous;
-  const Index at = free_, after = before == kNone ? first_[object] : updates_[before].next;
-  free_ = updates_[at].next;
+  const Index after = before == kNone ? first_[object] : updates_[before].next;
   updates_[at] = {number, state, before, after};
   (before == kNone ? first_[object] : updates_[before].next) = at;
   (after == kNone ? last_[object] : updates_[after].previous) = at;
@@ -136,8 +140,7 @@ Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<
   reset_timelines();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     tracks_[i].path.object = static_cast<std::uint32_t>(i);
-    tracks_[i].path.state.position = scene.objects[i].initial.position;
-    tracks_[i].path.state.rotation = scene.objects[i].initial.rotation;
+    tracks_[i].path.state = initial_state(scene, i);
   }
 }
 
@@ -152,17 +155,17 @@ std::int64_t Replica::interval(const Track& track) const noexcept {
 
 void Replica::reset_timelines() noexcept {
   heard_.reset();
-  timelines_.reset(scene_.objects);
+  timelines_.reset(scene_);
 }
 
-void Replica::add_to_timelines(const DecodedPacket& packet, std::span<const RigidState> objects) noexcept {
+void Replica::add_to_timelines(const DecodedPacket& packet, const RigidStates& states) noexcept {
   if (packet.restarts) reset_timelines();
   heard_.add(packet.number);
-  for (const RigidUpdate& update : packet.updates) timelines_.add(update.object, packet.number, objects[update.object]);
+  for (const RigidUpdate& update : packet.updates) timelines_.add(update.object, packet.number, states.objects[update.object]);
 }
 
-void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t arrival) noexcept {
-  if (interpolation_ == Interpolation::playout) return add_to_timelines(packet, objects);
+void Replica::apply(const DecodedPacket& packet, const RigidStates& states, std::int64_t arrival) noexcept {
+  if (interpolation_ == Interpolation::playout) return add_to_timelines(packet, states);
   for (const RigidUpdate& update : packet.updates) {
     Track& track = tracks_[update.object];
     if (packet.number < track.number) continue;  // overtaken by a newer update of this object
@@ -177,7 +180,7 @@ void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> obj
       track.gap_count = std::min<std::uint8_t>(static_cast<std::uint8_t>(track.gap_count + 1), kArrivals);
     }
     track.last_arrival = now;
-    track.path.follow(predictor_, objects[update.object]);
+    track.path.follow(predictor_, states.objects[update.object]);
     track.begin = track.end = now;
     if (interpolation_ == Interpolation::none || running) continue;
     track.end = now + interval(track);
@@ -196,8 +199,8 @@ RigidMotion Replica::motion(const Track& track, std::int64_t now) const noexcept
 /// From an update to the next. spec 60-client 7.   pre  a.state.tick <= tick, and tick is not after the next
 RigidPose Replica::path_from(std::uint32_t object, const Timelines::Update& a, std::int64_t tick) const noexcept {
   const Timelines::Update* const b = a.next != Timelines::kNone ? &timelines_[a.next] : nullptr;
-  const bool is_whole = b == nullptr || a.number == 0 || b->state.tick == a.state.tick || b->state.tick - a.state.tick > reach_ ||
-                        heard_.all_between(a.number, b->number);
+  const bool is_whole = b == nullptr || a.number == 0 || a.state.lod == kOutOfInterest || b->state.tick == a.state.tick ||
+                        b->state.tick - a.state.tick > reach_ || heard_.all_between(a.number, b->number);
   return is_whole ? predictor_.shown(object, a.state, tick) : bend(scene_, a.state, b->state, tick);
 }
 
@@ -240,6 +243,11 @@ RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
   const Cubic curve = cubic(left);
   const std::int64_t faded = interpolation_ == Interpolation::hermite ? curve.error : left;
   return displaced(predictor_.shown(object, track.path.state, now), track.error, track.change, {faded, faded, curve.change});
+}
+
+std::uint8_t Replica::lod(std::uint32_t object, std::int64_t now) const noexcept {
+  if (interpolation_ != Interpolation::playout) return tracks_[object].path.state.lod;
+  return timelines_[timelines_.around(object, now).before].state.lod;
 }
 
 std::span<const Vec3i> Replica::displacements(std::size_t object, std::int64_t now) noexcept {

@@ -37,13 +37,13 @@ class Timelines {
     Index after = kNone;  ///< the next, if one is known
   };
 
-  /// Allocates for `objects` + 128 updates of each, 4096 at least and 32 768 at most.
+  /// Allocates for `objects` + 128 updates of each, 4096 at least and 32 768 at most; memory is taken by those that are used.
   explicit Timelines(std::size_t objects);
   /// How long updates are kept after a newer one of any object came [ticks]; without this as long as there is room. Of an older time the
   /// last of each object stays.
   void keep(std::int64_t ticks) noexcept { kept_ = ticks; }
 
-  void reset(std::span<const RigidObject> objects) noexcept;  ///< to their initial states.   pre  as many as there are
+  void reset(const Scene& scene) noexcept;  ///< to the initial states of its objects.   pre  as many as there are
   /// Add an update. Without room all objects forget their oldest.   time O(1) for updates in order
   void add(std::uint32_t object, std::uint64_t number, const RigidState& state) noexcept;
   Around around(std::uint32_t object, std::int64_t tick) const noexcept;  ///< time O(updates after `tick`)
@@ -53,8 +53,9 @@ class Timelines {
  private:
   void trim(std::uint32_t object, std::int64_t horizon) noexcept;
   void make_room() noexcept;
+  Index take() noexcept;
 
-  std::vector<Update> updates_;
+  std::vector<Update> updates_;      // those that were ever used
   std::vector<Index> first_, last_;  // by object
   Index free_ = kNone;               // a list by `next`
   std::int64_t kept_ = std::int64_t{1} << 40, newest_ = 0;
@@ -123,9 +124,9 @@ class Replica {
   /// Apply a decoded packet of the rigid objects at tick `arrival`: its own, or later when the network delayed it. An earlier
   /// arrival counts as the packet's tick, or as that of the object's last update, if that is later. With Interpolation::playout the
   /// arrival does not matter. Packets may come in any order.
-  /// in  objects   the states after that packet
+  /// in  states   those after that packet
   /// time O(updates), no allocation.
-  void apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t arrival) noexcept;
+  void apply(const DecodedPacket& packet, const RigidStates& states, std::int64_t arrival) noexcept;
 
   /// With Interpolation::playout: how far back from the newest tick poses are asked for.   in   delay  [ticks]
   void keep(std::int64_t delay) noexcept { timelines_.keep(delay + reach_); }
@@ -138,6 +139,10 @@ class Replica {
   /// pre  object < scene.objects.size().   time about 50 ns, 100 ns while interpolating or easing, 0.5 us over a gap; with playout and easing
   ///      1 us for each update that came within 2^ease ticks of the next, at most 64 of them. No allocation.
   RigidPose pose(std::uint32_t object, std::int64_t now) const noexcept;
+
+  /// Level of detail of an object as shown at tick `now`, in a scene with interest: its bounds are 2^lod times as wide; kOutOfInterest: it should
+  /// not be shown.   pre, time  as pose()
+  std::uint8_t lod(std::uint32_t object, std::int64_t now) const noexcept;
 
   /// Displacements of a deformable object's vertices as shown at tick `now`, V x 3, x 2^-position_exp m. Valid until the next call.
   /// pre  object < scene.deformables.size().   time O(V * modes), no allocation.
@@ -158,7 +163,7 @@ class Replica {
     std::uint8_t gap_count = 0, gap_next = 0;
   };
   static constexpr unsigned kMostEased = 64;  // updates back
-  void add_to_timelines(const DecodedPacket& packet, std::span<const RigidState> objects) noexcept;
+  void add_to_timelines(const DecodedPacket& packet, const RigidStates& states) noexcept;
   void reset_timelines() noexcept;
   RigidPose path_from(std::uint32_t object, const Timelines::Update& a, std::int64_t tick) const noexcept;
   PoseOffset past_offset(std::uint32_t object, Timelines::Index update) const noexcept;

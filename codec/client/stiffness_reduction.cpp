@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/elementary.h>
 #include <tactus/client/stiffness_reduction.h>
 
 #include <algorithm>
@@ -50,7 +51,7 @@ double StiffnessReduction::reduced(const DeformableTouch& touch, std::uint32_t r
 static double blending(const Vec3& hold, const Vec3& normal) noexcept {
   const double length = norm(hold);
   if (!(length > 0)) return 1;
-  return 2 / std::numbers::pi * std::acos(std::min(1.0, std::abs(dot(hold, normal)) / length));
+  return 2 / std::numbers::pi * arc_cosine(std::min(1.0, std::abs(dot(hold, normal)) / length));
 }
 
 double StiffnessReduction::reduced(const RigidTouch& touch, std::uint32_t round_trip) noexcept {

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include <tactus/session/numbers.h>
 #include <tactus/session/session_options.h>
@@ -26,6 +28,14 @@ class TokenBucket {
     fill(now);
     return rate_ == 0 || level_ > 0;
   }
+  /// From now on.
+  void set_rate(std::uint64_t rate, std::uint64_t now) noexcept {
+    const auto next = static_cast<std::int64_t>(rate);
+    if (next == rate_) return;
+    fill(now);
+    level_ = rate_ == 0 ? next * kHolds : std::min(level_, next * kHolds);
+    rate_ = next;
+  }
   void take(std::int64_t bits, std::uint64_t now) noexcept {
     fill(now);
     level_ -= rate_ == 0 ? 0 : bits * 1'000'000;
@@ -44,25 +54,117 @@ class TokenBucket {
   std::uint64_t filled_at_ = 0;
 };
 
+// ==== line pace ====
+// How fast pieces of a declaration go: as fast as the line brings them, without a long queue on it. spec/70-session.md section 6.
+
+class LinePace {
+ public:
+  /// in   least_gap  [us] from piece to piece at the rate that the user states
+  explicit LinePace(std::uint64_t least_gap) noexcept : least_gap_(std::max(least_gap, kLeastGap)) {}
+  static constexpr std::uint64_t kLeastGap = 80;  ///< [us]: 100 Mbit/s
+
+  std::uint64_t window() const noexcept;                        ///< pieces that may be on their way
+  std::uint64_t gap() const noexcept;                           ///< [us] from piece to piece
+  void sent(std::uint64_t number, std::uint64_t now) noexcept;  ///< a piece, in a datagram of this number
+  void arrived() noexcept { ++arrived_; }                       ///< one more of them, as is known from now on
+
+  /// What an acknowledgement that measured a round trip says of its `newest`.
+  struct Told {
+    std::uint64_t number = 0, newest_sent = 0;  ///< of this datagram, of the last that was sent
+    std::int64_t sent = 0, arrived = 0;  ///< [us] both by the own clock: when it went, and came there, later by the way back
+  };
+  void told(const Told& said, const RoundTrip& trip, std::uint64_t now) noexcept;
+  void timed_out() noexcept { is_blind_ = true; }  ///< nothing was told for too long
+
+ private:
+  static constexpr std::uint64_t kFirstMore = 8;
+  struct Mark {
+    std::uint64_t number = 0, count = 0;  // pieces that had arrived
+    std::int64_t sent = 0, arrived = 0;
+  };
+  std::int64_t excess() const noexcept;
+  bool has_queue() const noexcept { return excess() > 0; }
+  std::uint64_t rate_gap() const noexcept;  // [us/16] at the rate that the line has
+  void begin(const Mark& to, std::uint64_t now) noexcept;
+  void measure(const Mark& to, std::uint64_t now) noexcept;
+
+  std::uint64_t least_gap_;
+  std::uint64_t arrived_ = 0;
+  std::uint64_t first_number_ = 0, round_ends_ = 0;  // numbers
+  std::int64_t first_sent_ = 0;
+  std::optional<Mark> mark_;                // where the next measurement begins
+  std::int64_t least_ = 0, variation_ = 0;  // [us] of round trips
+  std::int64_t queue_ = 0;                  // [us] what the fastest now take more than the least
+  std::uint64_t more_ = kFirstMore;         // 1/32 of the rate
+  bool is_blind_ = false;
+  WindowedMinimum recent_{40'000};   // of round trips [us]
+  WindowedMinimum gaps_{1'000'000};  // [us/16] from arrival to arrival
+};
+
+// ==== line rate ====
+// How fast datagrams may go to a client over a way that nobody has told the rate of: no limit until a queue shows what it carries.
+// spec/70-session.md section 9.
+
+class LineRate {
+ public:
+  void begin(std::uint64_t now) noexcept;  ///< anew
+  /// in   number  of a datagram;  bytes  headers included
+  void sent(std::uint64_t number, std::uint64_t bytes, std::uint64_t now) noexcept;
+  /// in   sample  [us] a round trip, of the datagram with this number
+  void round_trip(const RoundTrip& trip, std::int64_t sample, std::uint64_t number, std::uint64_t now) noexcept;
+  void tick(bool held, std::uint64_t now) noexcept;      ///< in   held  as Congestion::tick()
+  std::uint64_t rate() const noexcept { return rate_; }  ///< [bit/s]; 0: no limit
+  /// The queue on the way is so long that nothing should go but a packet each 50 ms.
+  bool is_jammed() const noexcept;
+
+ private:
+  static constexpr std::size_t kNumbers = 1024;
+  struct Sent {
+    std::uint32_t at = 0, bytes = 0, size = 0;  // [us], of all up to it, both modulo 2^32; its own
+  };
+  std::int64_t queue() const noexcept { return *recent_.value() - std::max(trip_.least, longer_); }
+  bool is_longer(std::int64_t queue) noexcept;
+  std::int64_t limit() const noexcept { return std::max(kQueue, 2 * variation_.value().value_or(0)); }
+  void measure(std::uint64_t now) noexcept;
+  void slow_down(std::uint64_t now) noexcept;
+  void speed_up() noexcept;
+
+  static constexpr std::int64_t kQueue = 50'000;  // [us] that the fastest datagram of 100 ms may wait
+  std::uint64_t rate_ = 0, ceiling_ = 0;          // [bit/s]: now, at which there was a queue
+  std::uint64_t since_ = 0;                       // [us] of the period; later: until a change shows
+  std::int64_t queue_ = 0;                        // [us] at its begin
+  std::int64_t first_queue_ = 0;                  // [us] of looks that found the same,
+  int slowed_ = 0;                                // and how often the rate was lowered between them
+  std::int64_t longer_ = 0;                       // [us] round trip of a way that has become longer
+  bool held_ = false, has_news_ = false;          // in it
+  RoundTrip trip_;
+  std::uint32_t bytes_ = 0;                // sent
+  Sent newest_, mark_;                     // that has arrived: when; at the last measurement
+  WindowedMinimum recent_{100'000};        // of round trips [us]
+  WindowedMinimum carried_{1'000'000};     // [-bit/s]
+  WindowedMinimum variation_{10'000'000};  // [us] of round trips
+  std::array<Sent, kNumbers> numbers_{};
+};
+
 // ==== congestion ====
-// How far the bounds widen while the way to a client does not carry what they ask for. spec/70-session.md section 9. Internal to the
+// How far the bounds widen while the rate to a client does not carry what they ask for. spec/70-session.md section 9. Internal to the
 // library.
 
-/// Looks at half a second at a time: a step wider if one tick in ten was held back, or if even the fastest datagram waited in a queue that
-/// does not get shorter; a step narrower after 2 s without either, and after twice as long each time that this was too early.
+/// Looks at half a second at a time: a step wider if what was held back waited for long, or many shapes were left out; a step narrower after
+/// half a second without either, and after twice as long each time that this was too early.
 class Congestion {
  public:
   /// in   most  factor, 1 to 64
   explicit Congestion(double most) noexcept;
 
   void begin(std::uint64_t now) noexcept;  ///< anew; the counters of time go on
-  void round_trip(const RoundTrip& trip, std::int64_t sample, std::uint64_t now) noexcept;
-  /// The queue on the way is so long that nothing should go but a packet each 50 ms.
-  bool is_jammed() const noexcept;
-  /// A tick.   in   held  nothing was sent, as the rate was used up or the way is jammed      out  true: the factor is another one
-  bool tick(bool held, std::uint64_t now) noexcept;
+  void answered() noexcept { answered_ = true; }
+  /// A tick.   in   held  nothing was sent, as the rate was used up or the way is jammed;  shapes  there are new ones
+  ///           out  true: the factor is another one
+  bool tick(bool held, bool shapes, std::uint64_t now) noexcept;
 
-  double widening() const noexcept;  ///< factor of all bounds: 2^(steps / 2)
+  bool waits() const noexcept { return waits_; }  ///< packets wait for their turn
+  double widening() const noexcept;               ///< factor of all bounds: 2^(steps / 2)
   const Widening& so_far() const noexcept { return so_far_; }
 
  private:
@@ -71,13 +173,10 @@ class Congestion {
   bool step(Period period) noexcept;
 
   unsigned most_steps_, steps_ = 0;
-  std::uint64_t since_ = 0, looked_at_ = 0;                        // [us] of the period, of the last tick
-  std::uint32_t ticks_ = 0, held_ = 0;                             // of the period
-  std::int64_t least_ = std::numeric_limits<std::int64_t>::max();  // [us] round trip of the period
-  std::int64_t queue_ = 0;                                         // [us] of the period before
-  RoundTrip trip_;
-  WindowedMinimum recent_{100'000};        // of round trips [us]
-  std::uint32_t calm_ = 0, patience_ = 4;  // periods: so far, before a step narrower
+  std::uint64_t since_ = 0, looked_at_ = 0;                                           // [us] of the period, of the last tick
+  std::uint32_t ticks_ = 0, held_ = 0, waits_begun_ = 0, shapes_ = 0, left_out_ = 0;  // of the period
+  bool was_held_ = false, answered_ = false, waits_ = false;
+  std::uint32_t calm_ = 0, patience_ = 1;  // periods: so far, before a step narrower
   bool narrowed_ = false;                  // by the last step, and nothing speaks against it so far
   Widening so_far_;
 };

@@ -169,7 +169,7 @@ std::size_t size_of(const PacePart& p) noexcept {
 }
 std::size_t size_of(const PiecePart& p) noexcept { return varint_size(p.index) + p.bytes.size(); }
 std::size_t size_of(const StatePart&) noexcept { return 1; }
-std::size_t size_of(const ReportPart& r) noexcept { return varint_size(r.delay) + 1; }
+std::size_t size_of(const ReportPart& r) noexcept { return varint_size(r.delay) + ((r.flags & ReportPart::kView) != 0 ? 13 : 1); }
 std::size_t size_of(const BaselinesPart&) noexcept { return 1; }
 std::size_t size_of(const SeatPart&) noexcept { return 1; }
 std::size_t size_of(const HashPart&) noexcept { return 7; }
@@ -184,7 +184,11 @@ void put(Put& to, const ButtonsPart& b) noexcept { to.integer(b.tick, 4).integer
 void put(Put& to, const PacePart& p) noexcept { to.varint(static_cast<std::uint64_t>(p.from)).varint(zigzag(p.offset)); }
 void put(Put& to, const PiecePart& p) noexcept { to.varint(p.index).bytes(p.bytes); }
 void put(Put& to, const StatePart& s) noexcept { to.integer(s.live, 1); }
-void put(Put& to, const ReportPart& r) noexcept { to.varint(r.delay).integer(r.key, 1); }
+void put(Put& to, const ReportPart& r) noexcept {
+  to.varint(r.delay).integer(r.flags, 1);
+  if ((r.flags & ReportPart::kView) == 0) return;
+  for (const std::int32_t c : r.view) to.integer(static_cast<std::uint32_t>(c), 4);
+}
 void put(Put& to, const BaselinesPart& b) noexcept { to.integer(b.policy, 1); }
 void put(Put& to, const SeatPart& s) noexcept { to.integer(s.seat, 1); }
 void put(Put& to, const HashPart& h) noexcept { to.integer(h.substream, 1).integer(h.number, 2).integer(h.hash, 4); }
@@ -208,8 +212,11 @@ Part read_part(std::uint8_t type, Direction direction, ByteReader& r) noexcept {
     return PacePart{from, unzigzag(r.varint())};
   }
   if (type == kReport && direction == Direction::up) {
-    const std::uint64_t delay = r.varint();
-    return ReportPart{delay, r.u8()};
+    ReportPart report;
+    report.delay = r.varint();
+    report.flags = r.u8();
+    if ((report.flags & ReportPart::kView) != 0) report.view = {r.i32(), r.i32(), r.i32()};
+    return report;
   }
   if (type == kBaselines && direction == Direction::down) return BaselinesPart{r.u8()};
   if (type == kSeat && direction == Direction::down) return SeatPart{r.u8()};
@@ -295,7 +302,8 @@ Result<std::optional<Part>> PartReader::read(std::uint8_t type, ByteReader part)
     return fail(Errc::malformed, "R-SES-3", part.bit_offset());
   const auto* report = std::get_if<ReportPart>(&out);
   const auto* baselines = std::get_if<BaselinesPart>(&out);
-  if ((report != nullptr && report->key > 1) || (baselines != nullptr && baselines->policy > 1))
+  if ((report != nullptr && report->flags > (ReportPart::kKey | ReportPart::kView)) ||
+      (baselines != nullptr && baselines->policy > 1))
     return fail(Errc::malformed, "R-SES-3", part.bit_offset());
   const auto* packet = std::get_if<PacketPart>(&out);
   only_packet_ = parts_ == 1 && packet != nullptr && packet->back == 0;

@@ -21,6 +21,9 @@ constexpr std::uint32_t kSomeLoss = 65536 / 100;   // above, no acknowledgement 
 constexpr std::int64_t kSlowestCopy = 80'000;      // [us] until the other end has the copy of a shape, if it shows later ticks
 constexpr std::uint64_t kLatestShape = 120'000;    // [us] from the first sending of a shape to its copy
 constexpr std::uint64_t kLatestRigid = 400'000;    // [us] the same of rigid objects, at least
+constexpr std::uint64_t kPieceReorder = 16;        // numbers by which pieces may come out of order
+constexpr std::uint64_t kBelated = 20'000;         // [us] a packet that no other waits for has a use after its tick was shown
+constexpr std::int64_t kLongTrip = 80'000;         // [us] from which on there is no time for a second round of copies
 constexpr std::uint64_t kFirstPatience = 250'000;  // [us] while no round trip is known
 
 std::size_t largest_packet(const Scene& scene) {
@@ -32,8 +35,11 @@ std::size_t largest_packet(const Scene& scene) {
 
 }  // namespace
 
-void Exchange::send_with(Sender coder) {
-  if (direction_ == Direction::down) resends_.emplace(largest_packet(*coder.scene()));
+void Exchange::send_with(Sender coder, bool repairs) {
+  repairs_ = repairs;
+  fixed_playout_ = playout_ > 0;
+  if (direction_ == Direction::down && (copies_rigid() || !coder.scene()->deformables.empty()))
+    resends_.emplace(largest_packet(*coder.scene()));
   sender.emplace(std::move(coder));
 }
 
@@ -92,15 +98,27 @@ void Exchange::report_link() noexcept {
   if (!sender || !sent_.round_trip()) return;
   const std::int64_t tick_rate = sender->scene()->tick_rate;
   const auto answer = (static_cast<std::int64_t>(patience()) * tick_rate + 999'999) / 1'000'000;
-  sender->set_link({.answer = std::max<std::int64_t>(1, answer), .loss = std::ldexp(sent_.loss(), -16)});
+  sender->set_link({.answer = std::max<std::int64_t>(1, answer),
+                    .loss = std::ldexp(sent_.loss(), -16),
+                    .copies = rigid_comes_in_time(),
+                    .waits = waits_});
+}
+
+void Exchange::set_waits(bool waits) noexcept {
+  if (std::exchange(waits_, waits) != waits) report_link();
 }
 
 Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& reading) noexcept {
   const auto arrived = [&](std::uint64_t number) {
     progress_at_ = reading.now;
-    if (pieces) pieces->arrived(number);
     const Slot& slot = slots_[number % slots_.size()];
-    if (!sender || slot.number != number) return;
+    if (slot.number != number) return;
+    if (pieces && slot.piece > 0) {
+      pieces->arrived(slot.piece - 1);
+      pieces->pace.arrived();
+      timeouts_ = 0;
+    }
+    if (!sender) return;
     for (std::size_t i = 0; i < slot.count && resends_; ++i) resends_->arrived(slot.kept[i], number);
     const bool waits = slot.fragment.number != 0 &&
                        !sent_fragments_.arrived(slot.fragment.number, slot.packets[0].substream, slot.fragment.index);
@@ -109,17 +127,31 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
   };
   const auto lost = [&](std::uint64_t number) {
     ++traffic_.lost;
-    if (pieces) pieces->lost(number);
     const Slot& slot = slots_[number % slots_.size()];
+    if (pieces && slot.number == number && slot.piece > 0) pieces->lost(slot.piece - 1);
     wants_key_ = wants_key_ || (slot.number == number && slot.layered);
     lose(number, reading.now);
   };
   TACTUS_CHECK(sent_.acknowledge(said, reading.now, arrived, lost));
+  if (pieces && sent_.round_trip())
+    sent_.lose(kPieceReorder,
+               reading.now - static_cast<std::uint64_t>(sent_.round_trip()->smoothed * 5 / 4 + sent_.round_trip()->variation),
+               lost);
   if (path && direction_ == Direction::up)
     path->settle(sent_.highest_acknowledged(), [this](std::uint64_t number) { return sent_.has_arrived(number); });
   reading.heard.round_trip = sent_.sample();
   if (sent_.sample()) report_link();
+  if (sent_.sample() && pieces) pace_pieces(said, reading.now);
   return {};
+}
+
+void Exchange::pace_pieces(const Acknowledgement& said, std::uint64_t now) noexcept {
+  const std::int64_t arrived = static_cast<std::int64_t>(now) - std::int64_t{16} * said.held;
+  pieces->pace.told({.number = sent_.highest_acknowledged(),
+                     .newest_sent = sent_.newest(),
+                     .sent = arrived - *sent_.sample(),
+                     .arrived = arrived},
+                    *sent_.round_trip(), now);
 }
 
 /// A packet of this datagram, or one that it completed.   in   number  0: of no datagram
@@ -132,7 +164,7 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
     return false;
   }
   reading.heard.tick = std::max(reading.heard.tick.value_or(decoded->tick), decoded->tick);
-  if (path && direction_ == Direction::down && path->add(number, receiver->objects_after(*decoded)[0]) <= 0) {
+  if (path && direction_ == Direction::down && path->add(number, receiver->object_after(*decoded, 0)) <= 0) {
     ++traffic_.packets_refused;
     return false;
   }
@@ -215,6 +247,32 @@ void Exchange::finish(const Reading& reading) noexcept {
 
 // Out
 
+bool Exchange::add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept {
+  const std::uint64_t index = *pieces->next();
+  if (!writer.add(PiecePart{index, pieces->bytes(index)})) return false;
+  slots_[number % slots_.size()].piece = static_cast<std::uint32_t>(index + 1);
+  pieces->sent(index);
+  pieces->pace.sent(number, now);
+  return true;
+}
+
+std::optional<std::uint64_t> Exchange::pieces_due() const noexcept {
+  if (!pieces || pieces->on_their_way() == 0) return std::nullopt;
+  const auto oldest = sent_.oldest();
+  return oldest ? std::optional(*oldest + (patience() << timeouts_)) : std::nullopt;
+}
+
+void Exchange::expire_pieces(std::uint64_t now) noexcept {
+  const auto due = pieces_due();
+  if (!due || now < *due) return;
+  sent_.expire(now - (patience() << timeouts_), [this](std::uint64_t number) {
+    const Slot& slot = slots_[number % slots_.size()];
+    if (slot.number == number && slot.piece > 0) pieces->lost(slot.piece - 1);
+  });
+  pieces->pace.timed_out();
+  timeouts_ = std::min(timeouts_ + 1, sent_.round_trip() ? 1u : 6u);
+}
+
 std::optional<std::uint64_t> Exchange::due() const noexcept {
   std::optional<std::uint64_t> out = received_.due();
   for (const auto& due : {resends_ ? resends_->due() : std::nullopt, tail_due()})
@@ -272,7 +330,7 @@ Result<std::span<const Packet>> Exchange::submit(std::uint64_t now, std::int64_t
   }
   begin_chain(now);
   TACTUS_TRY(packets_, sender->encode_numbered(*number, tick, truth));
-  if (path && direction_ == Direction::up && !packets_.empty()) path->add(packets_[0].number, sender->objects()[0]);
+  if (path && direction_ == Direction::up && !packets_.empty()) path->add(packets_[0].number, sender->object(0));
   return packets_;
 }
 
@@ -308,8 +366,13 @@ bool Exchange::add_fragment(const Packet& packet, std::uint64_t number, std::uin
   return true;
 }
 
+/// A copy that no packet waits for.
+bool Exchange::rigid_comes_in_time() const noexcept {
+  return !repairs_ && fixed_playout_ && sent_.round_trip() && patience() <= playout_;
+}
+
 bool Exchange::may_copy(std::uint64_t substream) const noexcept {
-  return substream == 0 ? repairs_ : is_of_deformable(*sender->scene(), substream);
+  return substream == 0 ? repairs_ || rigid_comes_in_time() : is_of_deformable(*sender->scene(), substream);
 }
 
 std::uint16_t Exchange::keep(std::uint64_t number, const Packet& packet, const Resends::Portion& portion,
@@ -327,18 +390,26 @@ bool Exchange::shapes_come_in_time() const noexcept {
   return trip && trip->smoothed + 4 * trip->variation + trip->least / 2 <= most;
 }
 
-/// A shape has a use until its tick is shown. All packets of rigid objects wait for one that is missing; but after an outage a key
-/// packet is there sooner than all of them.
+/// A shape has a use until its tick is shown, and a little longer a packet of rigid objects that no other waits for. Otherwise all of them
+/// wait for one that is missing; but after an outage a key packet is there sooner than all of them.
 Resends::Latest Exchange::latest() const noexcept {
-  return {.rigid = std::max({kLatestRigid, 4 * patience(), 2 * playout_}),
+  const auto way = static_cast<std::uint64_t>(sent_.round_trip()->least / 2);
+  return {.rigid = repairs_ ? std::max({kLatestRigid, 4 * patience(), 2 * playout_}) : way + playout_ + kBelated,
           .shape = shapes_come_in_time() ? std::max(kLatestShape, playout_) : 0,
-          .way = static_cast<std::uint64_t>(sent_.round_trip()->least / 2)};
+          .way = way};
+}
+
+/// Where all packets wait for one whose copies are lost, too, and another round takes long, there are more of them.
+unsigned Exchange::copies_of(std::uint64_t substream) const noexcept {
+  if (substream != 0) return 2;
+  if (!repairs_) return 1;
+  return sent_.round_trip() && sent_.round_trip()->least >= kLongTrip ? 3 : 2;
 }
 
 void Exchange::lose(std::uint64_t number, std::uint64_t now) noexcept {
   const Slot& slot = slots_[number % slots_.size()];
   if (!resends_ || slot.number != number) return;
-  for (std::size_t i = 0; i < slot.count; ++i) resends_->lost(slot.kept[i], number, now, 2);
+  for (std::size_t i = 0; i < slot.count; ++i) resends_->lost(slot.kept[i], number, now, copies_of(slot.packets[i].substream));
 }
 
 const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
@@ -348,7 +419,7 @@ const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
 
 /// [us] when the newest datagram that asks counts as lost: none after it would tell.
 std::optional<std::uint64_t> Exchange::tail_due() const noexcept {
-  if (!repairs_ || !sent_.round_trip() || asked_ <= sent_.highest_acknowledged()) return std::nullopt;
+  if (!copies_rigid() || !sent_.round_trip() || asked_ <= sent_.highest_acknowledged()) return std::nullopt;
   return std::max(asked_at_, tail_at_) + patience();
 }
 
@@ -364,7 +435,7 @@ void Exchange::want_key(std::uint64_t now) noexcept {
 }
 
 void Exchange::begin_chain(std::uint64_t now) noexcept {
-  if (resends_ && resends_->is_broken()) wants_chain_ = true;
+  if (resends_ && resends_->is_broken() && repairs_) wants_chain_ = true;
   if (repairs_ && is_cut_off(now)) wants_chain_ = true;  // the first that gets through is then enough
   if (!std::exchange(wants_chain_, false)) return;
   sender->request_rigid_key();

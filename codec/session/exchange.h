@@ -38,10 +38,9 @@ class Exchange {
   std::optional<PieceSender> pieces;  ///< of the declaration, until all have arrived
   std::shared_ptr<DevicePath> path;   ///< of the device whose packets go up; none: it drives nothing
 
-  void send_with(Sender coder);  ///< allocates
-  /// From now on packets of rigid objects build on the one before: what is lost goes again until it arrives, or they begin anew.
-  void repair() noexcept { repairs_ = true; }
-  void receive_with(Receiver decoder);  ///< allocates, to hold packets and to put fragments together
+  /// in   repairs  packets of rigid objects build on the one before: what is lost goes again until it arrives, or they begin anew
+  void send_with(Sender coder, bool repairs = false);  ///< allocates
+  void receive_with(Receiver decoder);                 ///< allocates, to hold packets and to put fragments together
 
   // In
 
@@ -114,7 +113,12 @@ class Exchange {
   }
   std::uint64_t asked_at() const noexcept { return asked_at_; }  ///< [us] when the last one went that must be acknowledged
   void hold_tick() noexcept { ++traffic_.ticks_held; }           ///< instead of submit(): nothing may be sent
+  void set_waits(bool waits) noexcept;                           ///< packets wait for their turn
   const SentNumbers& sent() const noexcept { return sent_; }
+  /// Add the next piece to the datagram of this number.   pre  there is one
+  bool add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
+  void expire_pieces(std::uint64_t now) noexcept;            ///< what should be acknowledged by now goes again
+  std::optional<std::uint64_t> pieces_due() const noexcept;  ///< [us] when that is; nothing: none is on its way
   /// [us] since when the first packet that is held waits; nothing: none is held.
   std::optional<std::uint64_t> waits_since() const noexcept { return held_ ? held_->waits_since() : std::nullopt; }
   /// The client has asked for a key packet of the rigid objects. It gets one, but not more often than one can be answered.
@@ -147,11 +151,13 @@ class Exchange {
     FragmentName fragment{};              // of the only packet
     std::uint8_t count = 0;
     bool layered = false;
+    std::uint32_t piece = 0;  // its index + 1; 0: none
   };
 
   Result<std::uint64_t> receive(std::uint64_t now, const Numbered& datagram) noexcept;
   Result<bool> handle(const Part& part, Reading& reading) noexcept;
   Result<void> acknowledged(const Acknowledgement& said, Reading& reading) noexcept;
+  void pace_pieces(const Acknowledgement& said, std::uint64_t now) noexcept;
   Result<void> take(const FragmentPart& fragment, Reading& reading) noexcept;
   bool decode(std::uint64_t number, std::span<const std::uint8_t> packet, Reading& reading) noexcept;
   bool hold(std::uint64_t number, std::span<const std::uint8_t> packet, const Error& error, std::uint64_t now) noexcept;
@@ -172,8 +178,11 @@ class Exchange {
   bool add_fragment(const Packet& packet, std::uint64_t number, std::uint64_t now) noexcept;
   std::uint16_t keep(std::uint64_t number, const Packet& packet, const Resends::Portion& portion, std::uint64_t now) noexcept;
   bool shapes_come_in_time() const noexcept;
+  bool copies_rigid() const noexcept { return repairs_ || fixed_playout_; }
+  bool rigid_comes_in_time() const noexcept;
   bool may_copy(std::uint64_t substream) const noexcept;
   Resends::Latest latest() const noexcept;
+  unsigned copies_of(std::uint64_t substream) const noexcept;
   void lose(std::uint64_t number, std::uint64_t now) noexcept;
   std::optional<std::uint64_t> tail_due() const noexcept;
   void watch_tail(std::uint64_t now) noexcept;
@@ -185,6 +194,7 @@ class Exchange {
   std::span<const std::uint8_t> end(std::uint64_t now, bool asks) noexcept;
 
   Direction direction_;
+  unsigned timeouts_ = 0;  // of pieces, since the last that arrived
   std::uint64_t epoch_;
   DatagramWriter writer_;
   ReceivedNumbers received_;
@@ -196,7 +206,8 @@ class Exchange {
   std::optional<HeldPackets> held_;  // none: what lacks its baseline is refused
   std::uint64_t newest_rigid_ = 0;   // number of the newest packet of rigid objects that was decoded
   std::uint64_t rigid_heard_ = 0;    // the same, or that is held
-  bool repairs_ = false, repaired_ = true;
+  bool repairs_ = false, repaired_ = true, waits_ = false;
+  bool fixed_playout_ = false;       // by its user: known before the first packet
   std::uint64_t playout_ = 0;        // [us] of the client
   std::uint64_t tail_at_ = 0;        // [us] when the newest datagram that asks was last taken for lost
   bool wants_chain_ = false;         // packets of rigid objects must begin anew

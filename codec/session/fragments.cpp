@@ -2,6 +2,7 @@
 #include <tactus/session/fragments.h>
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include <tactus/base/bytes.h>
@@ -63,22 +64,16 @@ void Fragments::decoded(const Complete& packet) noexcept { find(packet.number, p
 
 // ==== pieces ====
 
-std::optional<std::uint64_t> PieceSender::next(std::uint64_t now, std::uint64_t patience) const noexcept {
-  const std::uint64_t end = std::min(piece_count(bytes_->size()), arrived_.front() + most_);
-  for (std::uint64_t index = arrived_.front(); index < end; ++index) {
-    const OnItsWay& sent = on_its_way_[index % kPieceWindow];
-    const bool waits = sent.number > 0 && sent.index == index && now < sent.time + patience;
-    if (!waits && !arrived_.has(index)) return index;
+std::optional<std::uint64_t> PieceSender::next() const noexcept {
+  if (count_ >= pace.window()) return std::nullopt;
+  for (std::uint64_t index = front_; index < next_; index = (index | 63) + 1) {
+    const std::uint64_t lost = ~(arrived_.word(index) | on_their_way_.word(index)) >> index % 64;
+    if (lost == 0) continue;
+    const std::uint64_t first = index + static_cast<std::uint64_t>(std::countr_zero(lost));
+    if (first < next_) return first;
   }
-  return std::nullopt;
-}
-
-std::optional<std::uint64_t> PieceSender::due(std::uint64_t patience) const noexcept {
-  std::optional<std::uint64_t> out;
-  for (const OnItsWay& sent : on_its_way_)
-    if (sent.number > 0 && sent.index < arrived_.front() + most_ && !arrived_.has(sent.index))
-      out = std::min(out.value_or(~std::uint64_t{0}), sent.time + patience);
-  return out;
+  if (next_ >= std::min(piece_count(bytes_->size()), front_ + piece_window(received_))) return std::nullopt;
+  return next_;
 }
 
 std::span<const std::uint8_t> PieceSender::bytes(std::uint64_t index) const noexcept {
@@ -87,35 +82,36 @@ std::span<const std::uint8_t> PieceSender::bytes(std::uint64_t index) const noex
                                     static_cast<std::size_t>(std::min<std::uint64_t>(kPieceSize, bytes_->size() - begin)));
 }
 
-void PieceSender::sent(std::uint64_t index, std::uint64_t number, std::uint64_t now) noexcept {
-  on_its_way_[index % kPieceWindow] = {index, number, now};
+void PieceSender::sent(std::uint64_t index) noexcept {
+  next_ = std::max(next_, index + 1);
+  on_their_way_.set(index);
+  ++count_;
 }
 
-void PieceSender::arrived(std::uint64_t number) noexcept {
-  for (OnItsWay& sent : on_its_way_) {
-    if (sent.number != number) continue;
-    sent.number = 0;
-    most_ = std::min(most_ + 1, kPieceWindow);
-    return arrived_.add(sent.index);
-  }
+void PieceSender::arrived(std::uint64_t index) noexcept {
+  lost(index);
+  if (index < front_ || arrived_.has(index)) return;
+  arrived_.set(index);
+  ++received_;
+  for (; front_ < next_ && arrived_.has(front_); ++front_) arrived_.clear(front_);
 }
 
-void PieceSender::lost(std::uint64_t number) noexcept {
-  for (OnItsWay& sent : on_its_way_)
-    if (sent.number == number) sent.number = 0;
+void PieceSender::lost(std::uint64_t index) noexcept {
+  if (index < front_ || !on_their_way_.has(index)) return;
+  on_their_way_.clear(index);
+  --count_;
 }
-
-void PieceSender::slow_down() noexcept { most_ = std::max(most_ / 2, kFewest); }
 
 Result<void> PieceReceiver::take(std::uint64_t index, std::span<const std::uint8_t> bytes) try {
-  const std::uint64_t begin = index * kPieceSize;
-  const bool within = index < piece_count(size_) && index < have_.front() + kPieceWindow;
-  if (!within || bytes.size() != std::min(kPieceSize, size_ - begin)) return fail(Errc::invalid, "R-SES-8");
-  if (have_.has(index)) return {};
-  const auto end = static_cast<std::size_t>(begin + bytes.size());
-  if (bytes_.size() < end) bytes_.resize(end);
-  std::ranges::copy(bytes, bytes_.begin() + static_cast<std::ptrdiff_t>(begin));
-  have_.add(index);
+  const bool within = index < piece_count(size_) && index < front_ + piece_window(count());
+  if (!within || bytes.size() != std::min(kPieceSize, size_ - index * kPieceSize)) return fail(Errc::invalid, "R-SES-8");
+  if (index >= front_) above_.try_emplace(index, bytes.begin(), bytes.end());
+  while (!above_.empty() && above_.begin()->first == front_) {
+    const auto& next = above_.begin()->second;
+    bytes_.insert(bytes_.end(), next.begin(), next.end());
+    above_.erase(above_.begin());
+    ++front_;
+  }
   return {};
 } catch (const std::bad_alloc&) {
   return out_of_memory();
@@ -176,7 +172,9 @@ std::uint16_t Resends::keep(std::uint64_t datagram, const Packet& packet, const 
                   .sequence = packet.sequence,
                   .index = static_cast<std::uint16_t>(portion.index),
                   .count = static_cast<std::uint16_t>(portion.count),
-                  .size = static_cast<std::uint16_t>(size)};
+                  .size = static_cast<std::uint16_t>(size),
+                  .copies = 0,
+                  .is_settled = false};
   std::ranges::copy(portion.bytes, bytes_.begin() + static_cast<std::ptrdiff_t>(end_ % capacity));
   end_ += size;
   return static_cast<std::uint16_t>(place);

@@ -7,6 +7,7 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,7 +15,9 @@
 #include <vector>
 
 #include <tactus/base/result.h>
+#include <tactus/base/untouched.h>
 #include <tactus/packet/packet.h>
+#include <tactus/session/congestion.h>
 #include <tactus/session/datagram.h>
 
 namespace tactus {
@@ -51,7 +54,7 @@ class Fragments {
     std::uint64_t number = 0, substream = 0;  // number 0: empty
     std::size_t count = 0, have = 0, size = 0;
     bool is_decoded = false;
-    std::vector<std::uint8_t> bytes;
+    UntouchedBytes bytes;
     std::bitset<kMostFragments> has;  // by fragment
   };
   Packet* find(std::uint64_t number, std::uint64_t substream) noexcept;
@@ -99,50 +102,47 @@ class SentFragments {
 // A scene declaration in pieces. spec/70-session.md section 6.
 
 inline constexpr std::uint64_t kPieceSize = 1024;  ///< [bytes] of all but the last
-inline constexpr std::uint64_t kPieceWindow = 64;  ///< pieces that may be on their way
 
 constexpr std::uint64_t piece_count(std::uint64_t size) noexcept { return size / kPieceSize + (size % kPieceSize > 0 ? 1 : 0); }
 
-/// Which of the pieces are there: all below a front, and some of the window above it.
-class PieceSet {
- public:
-  std::uint64_t front() const noexcept { return front_; }  ///< lowest that is missing
-  bool has(std::uint64_t index) const noexcept { return index < front_ || (index < front_ + kPieceWindow && bit(index) != 0); }
-  void add(std::uint64_t index) noexcept {  ///< pre  below front() + kPieceWindow
-    if (index < front_) return;
-    window_ |= std::uint64_t{1} << (index - front_);
-    for (; (window_ & 1u) != 0; window_ >>= 1) ++front_;
-  }
-
- private:
-  std::uint64_t bit(std::uint64_t index) const noexcept { return window_ >> (index - front_) & 1u; }
-  std::uint64_t front_ = 0, window_ = 0;
-};
+inline constexpr std::uint64_t kLargestPieceWindow = 1024;
+/// Pieces from the first that is missing on that a client takes once so many have come.
+constexpr std::uint64_t piece_window(std::uint64_t received) noexcept {
+  return received < 60 ? 64 + 16 * received : kLargestPieceWindow;
+}
 
 class PieceSender {
  public:
-  explicit PieceSender(std::shared_ptr<const std::vector<std::uint8_t>> declaration) noexcept : bytes_(std::move(declaration)) {}
+  /// in   least_gap  [us] from piece to piece at the rate that the user states
+  explicit PieceSender(std::shared_ptr<const std::vector<std::uint8_t>> declaration, std::uint64_t least_gap = 0) noexcept
+      : pace(least_gap), bytes_(std::move(declaration)) {}
 
-  bool is_done() const noexcept { return arrived_.front() == piece_count(bytes_->size()); }
-  /// The next piece to send: new, or known or supposed to be lost.   in  patience  [us] for an acknowledgement   time O(window)
-  std::optional<std::uint64_t> next(std::uint64_t now, std::uint64_t patience) const noexcept;
-  /// When a piece on its way is supposed to be lost; nothing is on its way: nothing.
-  std::optional<std::uint64_t> due(std::uint64_t patience) const noexcept;
+  LinePace pace;
+
+  bool is_done() const noexcept { return front_ == piece_count(bytes_->size()); }
+  /// The next piece to send: one that is lost, or a new one. Nothing: as many are on their way as may be.
+  std::optional<std::uint64_t> next() const noexcept;
   std::span<const std::uint8_t> bytes(std::uint64_t index) const noexcept;
-  void sent(std::uint64_t index, std::uint64_t number, std::uint64_t now) noexcept;  ///< in a datagram of this number
-  void arrived(std::uint64_t number) noexcept;
-  void lost(std::uint64_t number) noexcept;
-  void slow_down() noexcept;  ///< pieces wait in a queue on their way: half as many at a time
+  void sent(std::uint64_t index) noexcept;     ///< pre  next() has told it
+  void arrived(std::uint64_t index) noexcept;  ///< perhaps again, or after it was lost
+  void lost(std::uint64_t index) noexcept;     ///< its newest datagram is
+  std::uint64_t on_their_way() const noexcept { return count_; }
 
  private:
-  static constexpr std::uint64_t kFirst = 8, kFewest = 4;
-  struct OnItsWay {
-    std::uint64_t index = 0, number = 0, time = 0;  // number 0: not on its way
+  class Set {  // of indices from the front on
+   public:
+    bool has(std::uint64_t index) const noexcept { return (word(index) >> index % 64 & 1u) != 0; }
+    void set(std::uint64_t index) noexcept { words_[index / 64 % words_.size()] |= std::uint64_t{1} << index % 64; }
+    void clear(std::uint64_t index) noexcept { words_[index / 64 % words_.size()] &= ~(std::uint64_t{1} << index % 64); }
+    std::uint64_t word(std::uint64_t index) const noexcept { return words_[index / 64 % words_.size()]; }  ///< it is in
+
+   private:
+    std::array<std::uint64_t, kLargestPieceWindow / 64> words_{};
   };
   std::shared_ptr<const std::vector<std::uint8_t>> bytes_;
-  PieceSet arrived_;
-  std::array<OnItsWay, kPieceWindow> on_its_way_{};  // by index modulo the window
-  std::uint64_t most_ = kFirst;                      // from the first that has not arrived on
+  std::uint64_t front_ = 0, next_ = 0;      // first that has not arrived, first that was never sent
+  std::uint64_t count_ = 0, received_ = 0;  // on their way; that have arrived
+  Set arrived_, on_their_way_;
 };
 
 class PieceReceiver {
@@ -152,16 +152,19 @@ class PieceReceiver {
 
   /// err  invalid R-SES-8: not a piece of this declaration, beyond the window, or of another length; limit_exceeded R-API-11 memory
   Result<void> take(std::uint64_t index, std::span<const std::uint8_t> bytes);
-  bool is_complete() const noexcept { return have_.front() == piece_count(size_); }
+  bool is_complete() const noexcept { return front_ == piece_count(size_); }
   /// The declaration.   pre  is_complete()   err  checksum R-SES-10
   Result<std::span<const std::uint8_t>> declaration() const noexcept;
-  std::uint64_t received() const noexcept { return have_.front() * kPieceSize; }  ///< [bytes], about
+  std::uint64_t received() const noexcept { return count() * kPieceSize; }  ///< [bytes], about
   std::uint64_t size() const noexcept { return size_; }
 
  private:
+  std::uint64_t count() const noexcept { return front_ + above_.size(); }
+
   std::uint64_t size_, hash_;
-  PieceSet have_;
-  std::vector<std::uint8_t> bytes_;
+  std::uint64_t front_ = 0;
+  std::vector<std::uint8_t> bytes_;                           // of the pieces below the front
+  std::map<std::uint64_t, std::vector<std::uint8_t>> above_;  // it takes no more memory than came
 };
 
 // ==== resends ====
@@ -177,14 +180,14 @@ class Resends {
     std::span<const std::uint8_t> bytes;
   };
   struct Kept {
-    std::array<std::uint64_t, 4> datagrams{};  // that brought it, the newest first; 0: none
-    std::uint64_t number = 0;                  // of the packet
-    std::uint64_t time = 0, due = 0;           // [us] when it first went; when a copy may go
-    std::uint64_t begin = 0;                   // of its bytes
-    std::uint16_t substream = 0, sequence = 0;
-    std::uint16_t index = 0, count = 1, size = 0;  // index, count: as in Portion
-    std::uint8_t copies = 0;                       // that are to go
-    bool is_settled = false;                       // it has arrived, or nobody needs it any more
+    std::array<std::uint64_t, 4> datagrams;  // that brought it, the newest first; 0: none
+    std::uint64_t number;                    // of the packet
+    std::uint64_t time, due;                 // [us] when it first went; when a copy may go
+    std::uint64_t begin;                     // of its bytes
+    std::uint16_t substream, sequence;
+    std::uint16_t index, count, size;  // index, count: as in Portion
+    std::uint8_t copies;               // that are to go
+    bool is_settled;                   // it has arrived, or nobody needs it any more
   };
   /// [us] from the first sending of a packet to the arrival of its copy, at most.
   struct Latest {
@@ -221,8 +224,8 @@ class Resends {
   void settle(Kept& kept) noexcept;
   void unqueue(std::uint16_t place) noexcept;
 
-  std::vector<Kept> kept_;  // a ring
-  std::vector<std::uint8_t> bytes_;
+  std::vector<Kept, Untouched<Kept>> kept_;  // a ring; only places that were kept are looked at
+  UntouchedBytes bytes_;
   std::vector<std::uint16_t> waiting_;  // places of what has copies to go
   std::size_t first_ = 0, count_ = 0;
   std::uint64_t end_ = 0;  // of the bytes
@@ -270,7 +273,7 @@ class HeldPackets {
   void compact() noexcept;
 
   std::vector<Held> held_;
-  std::vector<std::uint8_t> bytes_;
+  UntouchedBytes bytes_;
   std::vector<std::uint16_t> order_;
   std::size_t end_ = 0;
 };

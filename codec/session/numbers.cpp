@@ -30,6 +30,12 @@ bool SentNumbers::is_open(std::uint64_t number) const noexcept {
   return slot.number == number && slot.fate == Fate::open;
 }
 
+std::optional<std::uint64_t> SentNumbers::oldest() const noexcept {
+  for (std::uint64_t number = first_open_; number < next_; ++number)
+    if (is_open(number)) return slots_[number % kRemembered].time;
+  return std::nullopt;
+}
+
 Result<std::uint64_t> SentNumbers::extend(const Acknowledgement& said) const noexcept {
   const auto behind = static_cast<std::uint16_t>(next_ - 1 - said.newest);
   if (behind >= kMostAhead || behind + std::uint64_t{1} >= next_) return fail(Errc::invalid, "R-SES-6");

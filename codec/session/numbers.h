@@ -79,6 +79,31 @@ class SentNumbers {
     return {};
   }
 
+  /// When the oldest went whose fate is not known [us]; nothing: there is none.
+  std::optional<std::uint64_t> oldest() const noexcept;
+  /// What went until then and was not acknowledged is lost.   in  lost(number)
+  template <class Lost>
+  void expire(std::uint64_t until, Lost&& lost) noexcept {
+    for (; first_open_ < next_; ++first_open_) {
+      if (!is_open(first_open_)) continue;
+      if (slots_[first_open_ % kRemembered].time > until) return;
+      slots_[first_open_ % kRemembered].fate = Fate::lost;
+      lost(first_open_);
+    }
+  }
+
+  /// What is that far below the highest acknowledged, and went until then, is lost, sooner than acknowledge() says so.
+  template <class Lost>
+  void lose(std::uint64_t back, std::uint64_t until, Lost&& lost) noexcept {
+    const std::uint64_t first = next_ > kRemembered ? next_ - kRemembered : 1;
+    for (std::uint64_t number = std::max(first, first_open_); number + back < highest_; ++number) {
+      if (!is_open(number) || slots_[number % kRemembered].time > until) continue;
+      slots_[number % kRemembered].fate = Fate::lost;
+      count(true);
+      lost(number);
+    }
+  }
+
   const std::optional<RoundTrip>& round_trip() const noexcept { return round_trip_; }
   /// Round trip of the last acknowledgement that measured one [us].
   std::optional<std::int64_t> sample() const noexcept { return sample_; }

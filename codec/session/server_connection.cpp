@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tactus/base/fixed.h>
 #include <tactus/base/rule.h>
 
 namespace tactus {
@@ -11,8 +12,7 @@ namespace {
 
 constexpr std::uint64_t kWelcomeEvery = 250'000;                             // [us] of a new epoch, until the client has heard
 constexpr std::uint64_t kClockEvery = 100'000, kDrivenClockEvery = 500'000;  // [us]
-constexpr std::uint64_t kPieceEvery = 500;                                   // [us]: 16 Mbit/s
-constexpr std::int64_t kPieceQueue = 80'000;                                 // [us] that a piece may wait on its way
+constexpr std::uint64_t kPieceLag = 2'000;                                   // [us] of pieces that may be made up for
 constexpr std::uint64_t kJammedEvery = 50'000;                               // [us]: packets through a long queue
 constexpr std::uint64_t kUnproven = 10'000'000;                              // [us] for the first datagram in the epoch
 constexpr unsigned kMostFaults = 100;
@@ -20,15 +20,19 @@ constexpr unsigned kLeaves = 3;  // one of them should arrive
 
 }  // namespace
 
-ServerConnection::ServerConnection(std::uint16_t client, const SessionServerOptions& options) noexcept
+ServerConnection::ServerConnection(std::uint16_t client, const SessionServerOptions& options, std::uint64_t& pieces_at) noexcept
     : client_(client),
       loss_(options.loss),
+      trusts_(options.addresses_are_proven),
+      works_elsewhere_(options.works_elsewhere),
       silence_(options.silence),
       headers_(options.headers),
       piece_time_(options.rate == 0 ? 0 : 8'000'000 * (kLargestDatagram + options.headers) / options.rate),
       most_widening_(options.widening),
+      most_rate_(options.rate),
       bucket_(options.rate),
-      congestion_(options.widening) {}
+      congestion_(options.widening),
+      pieces_at_(pieces_at) {}
 
 void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedScene& served, std::uint64_t epoch,
                             std::uint64_t now) noexcept {
@@ -59,8 +63,10 @@ void ServerConnection::begin_epoch(const ServedScene& served, std::uint64_t epoc
               .hash = served.hash,
               .start = served.start,
               .world = served.world};
+  if (works_elsewhere_ && exchange_ && exchange_->sender) old_ = std::move(exchange_->sender);
+  parts_ = Parts::none;
   exchange_.emplace(Direction::down, epoch, now);
-  exchange_->pieces.emplace(served.declaration);
+  exchange_->pieces.emplace(served.declaration, piece_time_);
   repeats_welcome_ = replaces;
   welcome_at_ = clock_at_ = piece_at_ = now;
   hashes_ = {};
@@ -70,6 +76,7 @@ void ServerConnection::begin_epoch(const ServedScene& served, std::uint64_t epoc
   next_tick_ = 0;
   buttons_ = {};
   playout_ = 0;
+  view_.reset();
   seat(seat_);
   seat_waits_ = seat_ != 0;
 }
@@ -133,8 +140,8 @@ Result<void> ServerConnection::handle_datagram(std::uint64_t now, std::span<cons
 /// in  sample  [us] a round trip
 void ServerConnection::measured(std::int64_t sample, std::uint64_t now) noexcept {
   const RoundTrip& trip = *exchange_->sent().round_trip();
-  congestion_.round_trip(trip, sample, now);
-  if (exchange_->pieces && sample - trip.least > kPieceQueue) exchange_->pieces->slow_down();
+  line_.round_trip(trip, sample, exchange_->sent().highest_acknowledged(), now);
+  congestion_.answered();
 }
 
 Result<void> ServerConnection::handle(const Part& part, std::uint64_t now) noexcept {
@@ -154,7 +161,22 @@ void ServerConnection::take(const ReportPart& said, std::uint64_t now) noexcept 
   constexpr std::uint64_t kLongest = 2'000;  // [ms]: no copy comes later
   playout_ = 1000 * std::min(said.delay, kLongest);
   exchange_->set_playout(playout_);
-  if (said.key != 0) exchange_->want_key(now);
+  if ((said.flags & ReportPart::kKey) != 0) exchange_->want_key(now);
+  const auto metres = [](std::int32_t c) { return std::ldexp(c, -ReportPart::kViewExponent); };
+  if ((said.flags & ReportPart::kView) != 0) view_ = {metres(said.view[0]), metres(said.view[1]), metres(said.view[2])};
+}
+
+/// From where the client looks, in a scene with interest: a participant from its device at least, as soon as that is known.
+void ServerConnection::look() noexcept {
+  if (!served_.scene->interest || (!view_ && join_.role == Role::observer)) return;
+  std::array<Vec3, 2> places;
+  std::size_t count = 0;
+  if (view_) places[count++] = *view_;
+  if (exchange_->receiver && exchange_->receiver->tick(0) > 0) {
+    const RigidState& device = exchange_->receiver->object(0);
+    places[count++] = to_pose({device.position, device.rotation}, served_.device->grid.position).position;
+  }
+  exchange_->sender->look_from(std::span(places).first(count));
 }
 
 /// Before it is live a client knows only a delay that its user has fixed: it must be long enough for a copy.
@@ -165,21 +187,60 @@ bool ServerConnection::repairs() const noexcept {
   return join_.role == Role::observer && (playout_ == 0 || static_cast<std::int64_t>(playout_) >= 2 * trip + kCopies);
 }
 
+Result<void> ClientParts::make() {
+  TACTUS_TRY(sender, Sender::create(scene, options, truth));
+  if (device) {
+    TACTUS_TRY(receiver, Receiver::create(device));
+  }
+  return {};
+}
+
+ClientParts ServerConnection::parts() const noexcept {
+  ClientParts out{.client = client_,
+                  .epoch = welcome_.epoch,
+                  .scene = served_.scene,
+                  .device = join_.role == Role::participant ? served_.device : nullptr,
+                  .truth = served_.truth,
+                  .options = served_.sender,
+                  .repaired = repairs(),
+                  .sender = {},
+                  .receiver = {}};
+  if (out.repaired) out.options.policy.baseline = Baseline::repaired;
+  return out;
+}
+
+ClientParts ServerConnection::ask_parts() noexcept {
+  parts_ = Parts::asked;
+  return parts();
+}
+
 /// The client holds the declaration: from the next tick on it gets packets, and may send those of its device.
 Result<void> ServerConnection::go_live(std::uint64_t now) noexcept try {
+  if (!next_state(server_transitions(), state_, SessionEvent::completed)) return {};
+  if (works_elsewhere_) {
+    if (parts_ == Parts::none) parts_ = Parts::wanted;
+    return {};
+  }
+  ClientParts made = parts();
+  TACTUS_CHECK(made.make());
+  take(now, made);
+  return {};
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+bool ServerConnection::take(std::uint64_t now, ClientParts& parts) {
   const auto next = next_state(server_transitions(), state_, SessionEvent::completed);
-  if (!next) return {};
-  SenderOptions options = served_.sender;
-  const bool repaired = repairs();
-  if (repaired) options.policy.baseline = Baseline::repaired;
-  TACTUS_TRY(auto sender, Sender::create(served_.scene, options));
-  exchange_->send_with(std::move(sender));
-  tells_baselines_ = !repaired;
+  if (!next || parts.epoch != welcome_.epoch || !exchange_->pieces) return false;
+  parts_ = Parts::none;
+  exchange_->send_with(std::move(*parts.sender), parts.repaired);
+  tells_baselines_ = !parts.repaired;
   baselines_number_ = 0;
-  if (repaired) exchange_->repair();
   congestion_.begin(now);
-  if (join_.role == Role::participant) {
-    TACTUS_TRY(exchange_->receiver, Receiver::create(served_.device));
+  line_.begin(now);
+  bucket_.set_rate(most_rate_, now);
+  if (parts.receiver) {
+    exchange_->receiver = std::move(parts.receiver);
     const auto& limits = served_.scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual;
     device_clock_.emplace(served_.scene->tick_rate, PlayoutOptions{.fixed = 0}, static_cast<std::int64_t>(limits.stale));
     if (served_.scene->has_paths()) {
@@ -190,9 +251,7 @@ Result<void> ServerConnection::go_live(std::uint64_t now) noexcept try {
   }
   exchange_->pieces.reset();
   state_ = *next;
-  return {};
-} catch (const std::bad_alloc&) {
-  return out_of_memory();
+  return true;
 }
 
 void ServerConnection::compare(const HashPart& said) noexcept {
@@ -207,27 +266,44 @@ void ServerConnection::compare(const HashPart& said) noexcept {
   }
 }
 
-Result<void> ServerConnection::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {
+/// So that it can be compared with that of the client; unless others have taken the time, which comes again.
+void ServerConnection::note_hash(const Packet& packet, std::size_t& hashes) noexcept {
+  if (packet.number % kHashEvery != 0 || packet.layer != Layer::all) return;
+  const std::size_t cost = packet.substream == 0 ? served_.scene->moving().size() : 0;
+  if (cost > hashes) return;
+  hashes -= cost;
+  const auto hash = static_cast<std::uint32_t>(exchange_->sender->state_hash(packet.substream));
+  hashes_[next_hash_++ % hashes_.size()] = {packet.substream, packet.number, hash};
+}
+
+bool ServerConnection::is_held(std::uint64_t now) noexcept {
+  return !bucket_.is_open(now) || (line_.is_jammed() && now < exchange_->sent_at() + kJammedEvery);
+}
+
+Result<void> ServerConnection::submit(std::uint64_t now, std::int64_t tick, const Truth& truth, std::size_t& hashes) noexcept {
   next_tick_ = tick + 1;
   if (exchange_->path) exchange_->path->pass(tick);
-  const bool jammed = congestion_.is_jammed() && now < exchange_->sent_at() + kJammedEvery;
-  held_ = !bucket_.is_open(now) || jammed;
-  if (congestion_.tick(held_, now)) exchange_->sender->set_widening(widening());
+  held_ = is_held(now);
+  line_.tick(held_, now);
+  if (line_.rate() > 0) bucket_.set_rate(most_rate_ == 0 ? line_.rate() : std::min(line_.rate(), most_rate_), now);
+  else bucket_.set_rate(most_rate_, now);
+  const bool shapes = std::ranges::any_of(truth.deformables, [](const auto& shape) { return !shape.displacements.empty(); });
+  if (congestion_.tick(held_, shapes, now)) exchange_->sender->set_widening(widening());
+  exchange_->set_waits(congestion_.waits());
   if (held_) {
     exchange_->hold_tick();
     return {};
   }
+  look();
   TACTUS_TRY(const auto packets, exchange_->submit(now, tick, truth));
-  for (const Packet& packet : packets) {
-    if (packet.number % kHashEvery != 0 || packet.layer != Layer::all) continue;
-    const auto hash = static_cast<std::uint32_t>(exchange_->sender->state_hash(packet.substream));
-    hashes_[next_hash_++ % hashes_.size()] = {packet.substream, packet.number, hash};
-  }
+  for (const Packet& packet : packets) note_hash(packet, hashes);
   return {};
 }
 
-bool ServerConnection::wants_piece(std::uint64_t now) const noexcept {
-  return proven_ && exchange_->pieces && now >= piece_at_ && exchange_->pieces->next(now, exchange_->patience()).has_value();
+/// [us] When the next piece may go; nothing: there is none that may.
+std::optional<std::uint64_t> ServerConnection::piece_due() const noexcept {
+  if (!(proven_ || trusts_) || !exchange_->pieces || !exchange_->pieces->next()) return std::nullopt;
+  return exchange_->next_send(std::max(piece_at_, pieces_at_));
 }
 
 bool ServerConnection::wants_welcome(std::uint64_t now) const noexcept {
@@ -249,8 +325,8 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
     return writer_.write(welcome_);
   }
   if (held_) return std::nullopt;  // an acknowledgement would say that what the client has is new
-  if (now >= piece_at_) piece_at_ = exchange_->next_send(now);
-  const bool piece = wants_piece(now);
+  exchange_->expire_pieces(now);
+  const bool piece = piece_due().value_or(now + 1) <= now;
   const bool wanted = piece || wants_pace(now) || wants_seat(now);
   const auto datagram = exchange_->poll(now, wanted, [&](DatagramWriter& writer, std::uint64_t number) {
     if (served_.shift && now >= clock_at_ && !writer.empty()) {  // together with an acknowledgement
@@ -267,6 +343,7 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
     const bool baselines = tell_baselines(writer, number);
     return pace || piece || seat_waits_ || baselines;
   });
+  if (datagram) line_.sent(exchange_->sent().newest(), datagram->size() + headers_, now);
   if (datagram && !piece) bucket_.take(static_cast<std::int64_t>(8 * (datagram->size() + headers_)), now);
   return datagram;
 }
@@ -290,10 +367,10 @@ std::uint64_t ServerConnection::told_clock(std::uint64_t now) const noexcept {
 
 /// pre  there is one
 void ServerConnection::add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept {
-  const std::uint64_t index = *exchange_->pieces->next(now, exchange_->patience());
-  if (!writer.add(PiecePart{index, exchange_->pieces->bytes(index)})) return;
-  exchange_->pieces->sent(index, number, now);
-  piece_at_ = now + std::max(kPieceEvery, piece_time_);
+  if (!exchange_->add_piece(writer, number, now)) return;
+  const auto next = [now](std::uint64_t at, std::uint64_t gap) { return std::max(at + kPieceLag, now) - kPieceLag + gap; };
+  piece_at_ = next(piece_at_, exchange_->pieces->pace.gap());
+  pieces_at_ = next(pieces_at_, LinePace::kLeastGap);
 }
 
 void ServerConnection::add_seat(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept {
@@ -310,10 +387,8 @@ std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
   if (const auto acknowledgement = exchange_->due()) due = std::min(due, *acknowledgement);
   if (pace_ && pace_->waits()) due = std::min(due, pace_at_);
   if (seat_waits_) due = std::min(due, seat_at_);
-  if (proven_ && exchange_->pieces) {
-    if (exchange_->pieces->next(piece_at_, exchange_->patience())) due = std::min(due, piece_at_);
-    else if (const auto lost = exchange_->pieces->due(exchange_->patience())) due = std::min(due, *lost);
-  }
+  if (const auto piece = piece_due()) due = std::min(due, *piece);
+  if (const auto lost = exchange_->pieces_due()) due = std::min(due, *lost);
   return due;
 }
 

@@ -20,6 +20,7 @@ namespace tactus {
 /// What all clients get.
 struct ServedScene {
   SharedScene scene, device;
+  std::shared_ptr<SharedTruth> truth;
   std::shared_ptr<const std::vector<std::uint8_t>> declaration;
   std::uint64_t hash = 0;   ///< of the declaration
   std::uint64_t start = 0;  ///< [us] at tick 0
@@ -34,9 +35,24 @@ struct ServedScene {
   }
 };
 
+/// What brings a client live: made on any thread.
+struct ClientParts {
+  std::uint16_t client = 0;
+  std::uint64_t epoch = 0;
+  SharedScene scene, device;  // device: null if it is an observer
+  std::shared_ptr<SharedTruth> truth;
+  SenderOptions options;
+  bool repaired = false;
+  std::optional<Sender> sender;
+  std::optional<Receiver> receiver;
+
+  Result<void> make();  ///< err  as Sender::create, Receiver::create
+};
+
 class ServerConnection {
  public:
-  ServerConnection(std::uint16_t client, const SessionServerOptions& options) noexcept;
+  /// in   pieces_at  [us] when the next piece may go to any client: all have it in common, and it outlives them
+  ServerConnection(std::uint16_t client, const SessionServerOptions& options, std::uint64_t& pieces_at) noexcept;
 
   std::uint16_t client() const noexcept { return client_; }
   std::uint64_t peer() const noexcept { return peer_; }  ///< 0: none
@@ -68,7 +84,15 @@ class ServerConnection {
   bool is_at_fault() const noexcept;  ///< it breaks rules again and again
   bool is_silent(std::uint64_t now) const noexcept;
 
-  Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;  ///< pre  live
+  bool wants_parts() const noexcept { return parts_ == Parts::wanted; }
+  ClientParts ask_parts() noexcept;  ///< pre  wants_parts()
+  /// The client goes live.   out  false: it has gone, or begun anew
+  bool take(std::uint64_t now, ClientParts& parts);
+  void refuse_parts() noexcept { parts_ = Parts::none; }
+  std::optional<Sender> take_old() noexcept { return std::exchange(old_, std::nullopt); }  ///< of an epoch before
+
+  /// in   hashes  objects whose states may be hashed in this tick, for all clients: it takes 50 ns each.   pre  live
+  Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth, std::size_t& hashes) noexcept;
   double widening() const noexcept { return congestion_.widening(); }
   std::optional<std::span<const std::uint8_t>> poll(std::uint64_t now) noexcept;
   std::optional<std::uint64_t> next_timeout() const noexcept;
@@ -86,20 +110,24 @@ class ServerConnection {
   };
   Result<void> handle(const Part& part, std::uint64_t now) noexcept;
   Result<void> go_live(std::uint64_t now) noexcept;
+  ClientParts parts() const noexcept;
   void measured(std::int64_t sample, std::uint64_t now) noexcept;
   void compare(const HashPart& said) noexcept;
+  void note_hash(const Packet& packet, std::size_t& hashes) noexcept;
   void take(const ReportPart& said, std::uint64_t now) noexcept;
+  void look() noexcept;
   std::optional<DeviceSample> driving_device(std::uint64_t now) noexcept;
   bool tell_baselines(DatagramWriter& writer, std::uint64_t number) noexcept;
   bool wants_pace(std::uint64_t now) const noexcept { return pace_ && pace_->waits() && now >= pace_at_; }
   bool wants_seat(std::uint64_t now) const noexcept { return seat_waits_ && now >= seat_at_; }
-  bool wants_piece(std::uint64_t now) const noexcept;
+  std::optional<std::uint64_t> piece_due() const noexcept;
   bool wants_welcome(std::uint64_t now) const noexcept;
-  void add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
   std::uint64_t told_clock(std::uint64_t now) const noexcept;
+  void add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
   void add_seat(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
 
   bool repairs() const noexcept;
+  bool is_held(std::uint64_t now) noexcept;
 
   std::uint16_t client_;
   LossPolicy loss_;
@@ -108,9 +136,14 @@ class ServerConnection {
   unsigned leaves_ = 0;  // that are still to be sent
   unsigned faults_ = 0;
   std::uint8_t seat_ = 0;
-  bool held_ = false;      // the last tick was not sent
-  bool proven_ = false;    // it knows the epoch: the address is its own
-  bool outdated_ = false;  // there is a newer scene
+  bool held_ = false;    // the last tick was not sent
+  bool proven_ = false;  // it knows the epoch: the address is its own
+  bool trusts_;          // the transport has proven it before
+  bool works_elsewhere_;
+  enum class Parts : std::uint8_t { none, wanted, asked };
+  Parts parts_ = Parts::none;
+  std::optional<Sender> old_;  // to be freed elsewhere
+  bool outdated_ = false;      // there is a newer scene
   bool repeats_welcome_ = false;
   bool tells_baselines_ = false;                  // the client does not know yet that they are the acknowledged ones
   bool seat_waits_ = false;                       // for an acknowledgement
@@ -123,9 +156,12 @@ class ServerConnection {
   ServedScene served_;
   std::optional<Exchange> exchange_;
   DatagramWriter writer_{Direction::down};  // of what is outside of the exchange
+  std::uint64_t most_rate_;                 // [bit/s], 0: no limit
   TokenBucket bucket_;
+  LineRate line_;
   Congestion congestion_;
   std::uint64_t welcome_at_ = 0, clock_at_ = 0, piece_at_ = 0;  // [us] when the next may go
+  std::uint64_t& pieces_at_;                                    // [us] when one may go to any client
   std::array<KnownHash, 32> hashes_{};
   std::size_t next_hash_ = 0;
   std::uint64_t wrong_states_ = 0;
@@ -135,6 +171,7 @@ class ServerConnection {
   std::uint64_t pace_at_ = 0;       // [us] when its changes go again
   ButtonsPart buttons_;
   std::uint64_t playout_ = 0;                    // [us] that the client reported last
+  std::optional<Vec3> view_;                     // [m] where it said that it looks from
   std::uint64_t baselines_number_ = 0;           // of the first datagram that said so
   std::uint64_t seat_at_ = 0, seat_number_ = 0;  // [us] when it goes again; of the first datagram with it, 0: none yet
 };

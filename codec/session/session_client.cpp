@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
 #include <tactus/scene/scene_syntax.h>
 #include <tactus/session/exchange.h>
@@ -15,11 +16,12 @@
 namespace tactus {
 namespace {
 
-constexpr std::uint64_t kFirstRetry = 250'000, kLastRetry = 2'000'000, kJoinFor = 10'000'000;  // [us]
+constexpr std::uint64_t kFirstRetry = 100'000, kRejoin = 250'000, kLastRetry = 2'000'000, kJoinFor = 10'000'000;  // [us]
 // [us] from one sign of life to the next: of a participant who feels something, over a network that loses or not; of another
 // participant; of an observer while packets come, and at rest.
 constexpr std::uint64_t kFeltAtLoss = 12'000, kFelt = 25'000, kParticipant = 50'000, kServed = 100'000, kIdle = 1'000'000;
-constexpr std::uint64_t kSeldom = 2;  // times these, of a client that works out what its device does
+constexpr std::uint64_t kMoving = 100'000;  // [us] the same, while the place moves that it looks from
+constexpr std::uint64_t kSeldom = 2;        // times these, of a client that works out what its device does
 constexpr std::uint32_t kSomeLoss = 65536 / 50;
 constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
 constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
@@ -58,6 +60,9 @@ struct SessionClient::Impl {
   std::uint64_t sign_due() const noexcept;
   std::uint64_t rejoin_due() const noexcept;
   bool has_buttons_due(std::uint64_t now) const noexcept;
+  bool looks() const noexcept;
+  bool has_moved() const noexcept;
+  ReportPart report(std::uint64_t now) noexcept;
   Epoch* shown_epoch() const noexcept { return shown ? shown.get() : current.get(); }
   void look(std::uint64_t now) noexcept;
   void note(ClientEvent event) noexcept {
@@ -71,6 +76,7 @@ struct SessionClient::Impl {
   bool rejoins = false;  // a join went in this silence
   std::uint8_t seat = 0;
   std::uint64_t looked_at = 0;     // [us] of the last call
+  std::uint64_t woke_at = 0;       // [us] of the last after so long that what is known of the ways may be too old
   std::unique_ptr<Epoch> current;  // the newest
   std::unique_ptr<Epoch> shown;    // the one before, until the newest is live
   std::uint64_t sign_at = 0;       // [us] of the last sign of life
@@ -79,9 +85,10 @@ struct SessionClient::Impl {
   bool feels = false;              // the device is in contact
   std::optional<HashPart> hash;
   ButtonsPart buttons;
-  std::uint64_t buttons_at = 0;      // [us] when they go next
-  std::uint64_t buttons_number = 0;  // of the datagram that first brought them; 0: none yet
-  bool buttons_wait = false;         // for an acknowledgement
+  std::uint64_t buttons_at = 0;                                // [us] when they go next
+  std::uint64_t buttons_number = 0;                            // of the datagram that first brought them; 0: none yet
+  bool buttons_wait = false;                                   // for an acknowledgement
+  std::optional<std::array<std::int32_t, 3>> view, view_said;  // where the user looks from
   ClockOffset offset;
   ForceFade fade;
   unsigned leaves = 0;
@@ -139,6 +146,7 @@ void SessionClient::close() noexcept { impl_->close(SessionEvent::close, LeaveRe
 /// The program calls. If it did not for long, what comes now has waited.
 void SessionClient::Impl::look(std::uint64_t now) noexcept {
   if (now > looked_at + kAsleep && shown_epoch() != nullptr && shown_epoch()->playout) shown_epoch()->playout->wake(now);
+  if (now > looked_at + kDelayWindow / 2) woke_at = now;
   looked_at = now;
 }
 
@@ -208,7 +216,8 @@ Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& said
 
 Result<void> SessionClient::Impl::take(const Part& part, const Exchange::Heard& heard, std::uint64_t now) noexcept {
   if (const auto* clock = std::get_if<ClockPart>(&part)) {
-    if (heard.round_trip) offset.add(clock->time, *heard.round_trip, now);
+    const bool was_awake = heard.round_trip && woke_at + static_cast<std::uint64_t>(*heard.round_trip) <= now;
+    if (was_awake) offset.add(clock->time, *heard.round_trip, now);
     if (current->playout)
       current->playout->told(static_cast<std::int64_t>(clock->time) - static_cast<std::int64_t>(current->welcome.start), now);
   } else if (const auto* piece = std::get_if<PiecePart>(&part)) {
@@ -275,6 +284,7 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     return tl::unexpected(begun.error());
   }
   go(SessionEvent::completed);
+  view_said.reset();
   shown.reset();
   sign_at = 0;
   note({.kind = ClientEvent::Kind::live});
@@ -294,7 +304,35 @@ std::uint64_t SessionClient::Impl::sign_due() const noexcept {
   const std::uint64_t times = current->exchange.path ? kSeldom : 1;
   const std::uint64_t felt = current->exchange.sent().loss() > kSomeLoss ? kFeltAtLoss : times * kFelt;
   const std::uint64_t pause = feels ? felt : options.role == Role::participant ? times * kParticipant : served ? kServed : kIdle;
-  return current->exchange.next_send(sent + pause);
+  const std::uint64_t due = current->exchange.next_send(sent + pause);
+  return has_moved() ? std::min(due, current->exchange.next_send(sign_at + kMoving)) : due;
+}
+
+/// The server asks for the place that the user looks from.
+bool SessionClient::Impl::looks() const noexcept {
+  return view && state == SessionState::live && current->exchange.receiver && current->exchange.receiver->scene()->interest;
+}
+
+/// Away from the place that the server knows, by 0.1 m.
+bool SessionClient::Impl::has_moved() const noexcept {
+  constexpr std::int64_t kStep = (std::int64_t{1} << ReportPart::kViewExponent) / 10;
+  if (!looks()) return false;
+  for (std::size_t i = 0; view_said && i < 3; ++i)
+    if (std::abs(std::int64_t{(*view)[i]} - (*view_said)[i]) > kStep) return true;
+  return !view_said;
+}
+
+/// pre  live
+ReportPart SessionClient::Impl::report(std::uint64_t now) noexcept {
+  const auto& fixed = options.playout.fixed;
+  const auto delay = static_cast<std::uint64_t>(current->playout->delay()) / 1000;
+  ReportPart out{.delay = fixed ? std::max<std::uint64_t>(1, *fixed / 1000) : delay,
+                 .flags = is_stuck(now) ? ReportPart::kKey : std::uint8_t{0}};
+  if (!looks()) return out;
+  out.flags |= ReportPart::kView;
+  view_said = view;
+  out.view = *view;
+  return out;
 }
 
 /// When a client without an answer joins again.   pre  receiving or live
@@ -337,6 +375,14 @@ Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample
   return {};
 }
 
+void SessionClient::look_from(const Vec3& place) noexcept {
+  std::array<std::int32_t, 3> view{};
+  const std::array from{place.x, place.y, place.z};
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!quantise(from[i], ReportPart::kViewExponent, 2147483647.0, view[i])) return;
+  impl_->view = view;
+}
+
 std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::uint64_t now) noexcept {
   Impl& in = *impl_;
   if (in.leaves > 0) {
@@ -346,9 +392,9 @@ std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::u
   if (in.state == SessionState::closed) return std::nullopt;
   const bool joins = in.state == SessionState::joining;
   if (now >= (joins ? in.join_at : in.rejoin_due())) {
-    if (!joins && !std::exchange(in.rejoins, true)) in.retry = kFirstRetry;
+    if (!joins && !std::exchange(in.rejoins, true)) in.retry = kRejoin;
     in.join_at = now + in.retry;
-    in.retry = std::min(2 * in.retry, kLastRetry);
+    in.retry = std::min((joins ? 3 : 4) * in.retry / 2, kLastRetry);
     const DecodeLimits& limits = in.options.limits;
     return in.writer.write(Join{in.options.role, in.nonce, limits.state_bytes, limits.header_bytes, in.token, in.options.seat});
   }
@@ -360,12 +406,7 @@ std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::u
       in.buttons_at = now + kButtonsEvery;
       if (in.buttons_number == 0) in.buttons_number = number;
     }
-    if (sign && in.current->playout) {
-      const auto& fixed = in.options.playout.fixed;
-      const auto delay = static_cast<std::uint64_t>(in.current->playout->delay()) / 1000;
-      writer.add(ReportPart{fixed ? std::max<std::uint64_t>(1, *fixed / 1000) : delay,
-                            in.is_stuck(now) ? std::uint8_t{1} : std::uint8_t{0}});
-    }
+    if (sign && in.current->playout) writer.add(in.report(now));
     if (sign) {
       writer.add(StatePart{static_cast<std::uint8_t>(in.state == SessionState::live ? 1 : 0)});
       if (in.state == SessionState::live && in.live_number == 0) in.live_number = number;

@@ -21,7 +21,7 @@ namespace tactus {
 struct SessionStatus {
   SessionState state = SessionState::closed;
   std::uint16_t client = 0;
-  std::uint8_t seat = 0;                        ///< what a participant plays, from 1; 0: nothing
+  std::uint8_t seat = 0;                        ///< what a participant plays, from 1; 0: nothing; kOnlyLooksOn
   std::uint64_t world = 0;                      ///< what the server simulates; 0: not told
   std::uint64_t token = 0;                      ///< with which another client goes on with this session; 0: none yet
   std::uint64_t declaration = 0, received = 0;  ///< [bytes] of the scene declaration, in all and so far
@@ -60,6 +60,10 @@ class SessionClient {
   /// The device now: at most one sample per tick counts. Nothing happens unless the session is live and the client participates.
   /// err  as Sender::encode
   Result<void> submit(std::uint64_t now, const DeviceSample& sample, const std::optional<DeviceContact>& contact) noexcept;
+
+  /// In a scene with interest: where the user looks from [m, world frame], apart from the device of a participant. Objects far from both are told
+  /// less exactly or not at all (Replica::lod()). Say so before open(): an observer is told of all until it has. What is not finite, or beyond 8000 km, does not count.
+  void look_from(const Vec3& place) noexcept;
 
   std::optional<std::span<const std::uint8_t>> poll_datagram(std::uint64_t now) noexcept;  ///< valid until the next call
   std::optional<ClientEvent> poll_event() noexcept;

@@ -70,6 +70,9 @@ enum class Role : std::uint8_t {
   participant,  ///< touches: sends the samples of a device
 };
 
+/// The seat of a participant that has none because it may only look on.
+inline constexpr std::uint8_t kOnlyLooksOn = 255;
+
 /// Why a session ended or did not begin. Values are wire values.
 enum class LeaveReason : std::uint8_t {
   bye,       ///< the user or the program ended it
@@ -116,6 +119,12 @@ struct SessionServerOptions {
   double widening = 8;
   std::uint64_t silence = 120'000'000;  ///< [us] after which a client counts as gone
   std::uint64_t world = 0;              ///< what is simulated, as the clients' programs find it, too; 0: not told
+  /// The transport hands on datagrams only of peers that have answered from their address, as the seal does: the declaration goes with
+  /// the welcome, a round trip sooner.
+  bool addresses_are_proven = false;
+  /// What takes longer than a tick may is left to the program: SessionServer::poll_work(). Else it is done within the call that needs it,
+  /// which for 10^5 objects or vertices takes 20 to 50 ms of all clients.
+  bool works_elsewhere = false;
 };
 
 struct SessionClientOptions {

@@ -29,13 +29,21 @@ struct SessionServer::Impl {
   SessionServerOptions options;
   ServedScene served;
   std::uint64_t entropy = 0;
+  bool leaves_out = false;      // the last tick, as nobody was live
+  std::uint64_t pieces_at = 0;  // [us] when the next piece of a declaration may go to anybody
   std::vector<std::unique_ptr<ServerConnection>> connections;
-  std::size_t cursor = 0;  // of poll_datagram()
+  std::vector<std::uint64_t> peers;   // of each, or that it had: close together, as each datagram looks through them
+  std::size_t first = 0, cursor = 0;  // of poll_datagram()
   std::vector<ServerEvent> events;
   std::size_t next_event = 0;
   DatagramWriter writer{Direction::down};
   std::optional<std::pair<std::uint64_t, Datagram>> reply;  // to an address, outside of any epoch
 };
+
+constexpr double kQuiet = 1;  // [s] without a packet of the rigid objects
+constexpr std::size_t kMostHashed =
+    16'384;  // objects of a scene whose states are compared with those of clients: a hash takes 50 ns each
+constexpr std::size_t kHashedObjects = 4096;  // in a tick: 0.2 ms
 
 /// SplitMix64: epochs that differ and that strangers cannot tell, if they cannot tell the seed.
 static std::uint64_t draw(std::uint64_t& state) noexcept {
@@ -60,8 +68,12 @@ Result<SessionServer> SessionServer::create(SharedScene scene, const SessionServ
   impl->options = options;
   impl->options.sender.policy.baseline = Baseline::acknowledged;
   impl->options.sender.policy.key_interval = 0;
+  impl->options.sender.triggers.heartbeat = 0;  // who has acknowledged a state need not hear it again
+  impl->options.sender.policy.silence = kQuiet;
   impl->entropy = entropy;
-  for (std::uint16_t i = 0; i < options.clients; ++i) impl->connections.push_back(std::make_unique<ServerConnection>(i, options));
+  for (std::uint16_t i = 0; i < options.clients; ++i)
+    impl->connections.push_back(std::make_unique<ServerConnection>(i, options, impl->pieces_at));
+  impl->peers.resize(options.clients);
   impl->events.reserve(8 * std::size_t{options.clients} + 8);
   TACTUS_CHECK(impl->serve(std::move(scene), now));
   return SessionServer(std::move(impl));
@@ -70,13 +82,15 @@ Result<SessionServer> SessionServer::create(SharedScene scene, const SessionServ
 }
 
 Result<void> SessionServer::Impl::serve(SharedScene of, std::uint64_t now) {
-  TACTUS_CHECK(Sender::create(of, options.sender));  // so that no client meets a scene that cannot be sent
+  TACTUS_TRY(auto truth, SharedTruth::create(of, options.sender));
+  TACTUS_CHECK(Sender::create(of, options.sender, truth));  // so that no client meets a scene that cannot be sent
   TACTUS_TRY(auto declaration, write_scene(*of));
   TACTUS_TRY(auto device, device_scene(*of));
   Fnv1a hash;
   for (const std::uint8_t byte : declaration) hash.add_byte(byte);
   served = {.scene = std::move(of),
             .device = std::move(device),
+            .truth = std::move(truth),
             .declaration = std::make_shared<const std::vector<std::uint8_t>>(std::move(declaration)),
             .hash = hash.value(),
             .start = now,
@@ -100,8 +114,9 @@ Result<void> SessionServer::replace_scene(SharedScene scene, std::uint64_t now) 
 }
 
 ServerConnection* SessionServer::Impl::find(std::uint64_t peer) noexcept {
-  const auto found = std::ranges::find_if(connections, [peer](const auto& c) { return c->peer() == peer; });
-  return found == connections.end() ? nullptr : found->get();
+  for (std::size_t i = 0; i < peers.size(); ++i)
+    if (peers[i] == peer && connections[i]->peer() == peer) return connections[i].get();
+  return nullptr;
 }
 
 void SessionServer::Impl::drop(ServerConnection& connection, SessionEvent event, LeaveReason reason) noexcept {
@@ -117,12 +132,18 @@ ServerConnection* SessionServer::Impl::follow(std::uint64_t peer, std::uint64_t 
   if (known == connections.end() || known->get() == here) return here;
   if (here != nullptr) drop(*here, SessionEvent::left, LeaveReason::bye);
   (*known)->move(peer);
+  peers[(*known)->client()] = peer;
   return known->get();
 }
 
 /// A place for the client, or why there is none.
 Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept {
-  const auto refuse = [&](LeaveReason reason) { reply.emplace(peer, Refusal{said.nonce, reason}); };
+  const auto refuse = [&](LeaveReason reason) {
+    reply.emplace(peer, Refusal{said.nonce, reason});
+    const bool is_again = !events.empty() && events.back().kind == ServerEvent::Kind::refused && events.back().reason == reason;
+    if (!is_again)
+      note({.kind = ServerEvent::Kind::refused, .client = options.clients, .reason = reason});  // a flood fills nothing
+  };
   if (!said.is_known) {
     refuse(LeaveReason::version);
     return {};
@@ -148,6 +169,7 @@ Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, co
     place = free->get();
   }
   place->open(peer, said, served, draw(entropy), now);
+  peers[place->client()] = peer;
   reply.emplace(peer, place->welcome());
   note({.kind = ServerEvent::Kind::joined, .client = place->client()});
   return {};
@@ -197,11 +219,22 @@ std::uint64_t SessionServer::clock(std::uint64_t now) const noexcept {
 
 Result<void> SessionServer::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {
   impl_->keep_time(now, tick);
+  const auto is_live = [](const auto& connection) { return connection->state() == SessionState::live; };
+  if (std::ranges::none_of(impl_->connections, is_live)) {
+    impl_->leaves_out = true;
+    return {};
+  }
+  Truth told = truth;
+  if (impl_->leaves_out) told.moved.reset();  // what moved since the last tick that was read is not known
+  TACTUS_CHECK(impl_->served.truth->read(tick, told));
+  impl_->leaves_out = false;
   Result<void> first;
+  const std::size_t objects = impl_->served.scene->moving().size();
+  std::size_t hashes = objects > kMostHashed ? 0 : std::max(kHashedObjects, objects);
   for (auto& connection : impl_->connections) {
-    if (connection->state() != SessionState::live) continue;
+    if (!is_live(connection)) continue;
     const double before = connection->widening();
-    if (const auto done = connection->submit(now, tick, truth); !done && first) first = done;
+    if (const auto done = connection->submit(now, tick, truth, hashes); !done && first) first = done;
     if (connection->widening() != before)
       impl_->note({.kind = ServerEvent::Kind::widened, .client = connection->client(), .widening = connection->widening()});
   }
@@ -225,10 +258,11 @@ std::optional<SessionServer::Transmit> SessionServer::poll_datagram(std::uint64_
     return Transmit{peer, in.writer.write(said)};
   }
   for (; in.cursor < in.connections.size(); ++in.cursor) {
-    ServerConnection& connection = *in.connections[in.cursor];
+    ServerConnection& connection = *in.connections[(in.first + in.cursor) % in.connections.size()];
     if (const auto datagram = connection.poll(now)) return Transmit{connection.peer(), *datagram};
   }
   in.cursor = 0;
+  in.first = (in.first + 1) % in.connections.size();  // so that nobody's pieces take the time of all others
   return std::nullopt;
 }
 
@@ -238,6 +272,54 @@ std::optional<ServerEvent> SessionServer::poll_event() noexcept {
   in.events.clear();
   in.next_event = 0;
   return std::nullopt;
+}
+
+// Work
+
+struct SessionServer::Work::Impl {
+  ClientParts parts;
+  std::optional<Sender> old;
+  Result<void> made;
+};
+SessionServer::Work::Work(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+SessionServer::Work::Work(Work&&) noexcept = default;
+SessionServer::Work& SessionServer::Work::operator=(Work&&) noexcept = default;
+SessionServer::Work::~Work() = default;
+
+void SessionServer::Work::run() noexcept try {
+  impl_->old.reset();
+  if (impl_->parts.scene) impl_->made = impl_->parts.make();
+} catch (const std::bad_alloc&) {
+  impl_->made = out_of_memory();
+}
+
+std::optional<SessionServer::Work> SessionServer::poll_work() noexcept try {
+  for (auto& connection : impl_->connections) {
+    auto old = connection->take_old();
+    if (!old && !connection->wants_parts()) continue;
+    auto work = std::make_unique<Work::Impl>();
+    work->old = std::move(old);
+    if (connection->wants_parts()) work->parts = connection->ask_parts();
+    return Work(std::move(work));
+  }
+  return std::nullopt;
+} catch (const std::bad_alloc&) {
+  return std::nullopt;
+}
+
+Result<std::optional<SessionServer::Work>> SessionServer::take(std::uint64_t now, Work work) noexcept try {
+  ClientParts& parts = work.impl_->parts;
+  if (!parts.scene) return std::nullopt;
+  ServerConnection& connection = *impl_->connections[parts.client];
+  if (!work.impl_->made) {
+    if (parts.epoch == connection.welcome().epoch) connection.refuse_parts();
+    return tl::unexpected(work.impl_->made.error());
+  }
+  if (!connection.take(now, parts)) return std::optional(std::move(work));
+  impl_->note({.kind = ServerEvent::Kind::live, .client = parts.client});
+  return std::nullopt;
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 std::optional<std::uint64_t> SessionServer::next_timeout() const noexcept {

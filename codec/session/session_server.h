@@ -46,6 +46,7 @@ struct ServerEvent {
     left,     ///< for `reason`
     moved,    ///< its address is another one: ClientStatus::peer
     widened,  ///< its bounds are multiplied by `widening` from now on
+    refused,  ///< joins, for `reason`; `client` is nobody
   };
   Kind kind = Kind::joined;
   std::uint16_t client = 0;
@@ -54,6 +55,9 @@ struct ServerEvent {
 };
 
 /// Threads: one at a time. No call on the way of a datagram allocates but those that bring a client live; none throws.
+/// More clients than a thread can serve: several servers of the same scene and options, each on a thread of its own with its share of the
+/// addresses, that submit the same truth. What a client is sent depends on no other client once each server has one, so nothing is locked:
+/// each tick begins when the world has made the truth, and the world waits until all servers have submitted it. Each needs its own entropy.
 class SessionServer {
  public:
   /// in   entropy  64 bits from the system, that nobody else can tell. Epochs are drawn from them so that who has one could
@@ -67,14 +71,17 @@ class SessionServer {
   Result<void> handle_datagram(std::uint64_t now, std::uint64_t peer, std::span<const std::uint8_t> datagram) noexcept;
   void handle_timeout(std::uint64_t now) noexcept;
   /// Code a tick for every live client. Ticks are times of the scene: whoever misses some leaves out numbers, or makes them at once; who
-  /// pauses for more than 100 ms may go on with the next number.   time that of Sender::encode for each client
+  /// pauses for more than 100 ms may go on with the next number.
+  /// time SharedTruth::read once, and 0.5 us per live client; what clients have in common is worked out once (reports/scale). What rests
+  ///      costs nothing
   /// err  as Sender::encode, the first; all clients that can are served
   Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;
   /// [us] The clock that clients are told: by it tick n is at create() or replace_scene() + n ticks. Before the first tick that of the program.
   std::uint64_t clock(std::uint64_t now) const noexcept;
   /// Another scene: clients get a new epoch, and show the old one until they hold the new. Ticks begin anew.   err  as create()
   Result<void> replace_scene(SharedScene scene, std::uint64_t now);
-  /// What a participant plays, from 1; 0: nothing. It is told. Who comes back with the token of its session has the seat that it had.
+  /// What a participant plays, from 1; 0: nothing; kOnlyLooksOn: nothing, as it may not. It is told. Who comes
+  /// back with the token of its session has the seat that it had.
   void seat(std::uint16_t client, std::uint8_t seat) noexcept;
   /// Take leave of a client, or of all.
   void close(std::uint16_t client, LeaveReason reason) noexcept;
@@ -86,6 +93,29 @@ class SessionServer {
   };
   std::optional<Transmit> poll_datagram(std::uint64_t now) noexcept;
   std::optional<ServerEvent> poll_event() noexcept;
+
+  /// What a client needs before it goes live, or what one that has begun anew needs no more: to be made, or freed, on any thread while the
+  /// server goes on.
+  class Work {
+   public:
+    void run() noexcept;  ///< once
+    Work(Work&&) noexcept;
+    Work& operator=(Work&&) noexcept;
+    ~Work();
+
+   private:
+    friend class SessionServer;
+    struct Impl;
+    explicit Work(std::unique_ptr<Impl> impl) noexcept;
+    std::unique_ptr<Impl> impl_;
+  };
+  /// With SessionServerOptions::works_elsewhere, after each call as poll_datagram(); nothing: nothing is to be done.   time O(clients)
+  std::optional<Work> poll_work() noexcept;
+  /// The client goes live; from the next tick on it gets packets, as if it had said so now. All that was polled comes back, in any order.
+  /// out  it, if it holds what is to be freed, as the client has gone: destroy it where that may take its time
+  /// err  limit_exceeded R-API-11 memory: it is polled again once the client asks again
+  Result<std::optional<Work>> take(std::uint64_t now, Work work) noexcept;
+
   /// When handle_timeout() should be called; nothing: never.   time O(clients)
   std::optional<std::uint64_t> next_timeout() const noexcept;
 

@@ -2,14 +2,19 @@
 #include <tactus/net/udp.h>
 
 #include <arpa/inet.h>
+#ifdef __linux__
+#include <linux/sock_diag.h>
+#endif
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
+#include <cstddef>
 #include <cstring>
 #include <memory>
 #include <utility>
@@ -50,6 +55,8 @@ Result<int> open_socket(int family) {
 
 }  // namespace
 
+bool Address::has_form(std::string_view text) { return split(text).has_value(); }
+
 Result<Address> Address::parse(std::string_view text) {
   const auto parts = split(text);
   if (!parts) return fail(Errc::invalid_argument, "R-NET-1");
@@ -73,8 +80,17 @@ std::string Address::text() const {
   if (size_ == 0 ||
       getnameinfo(as_sockaddr(bytes_), size_, host, sizeof host, port, sizeof port, NI_NUMERICHOST | NI_NUMERICSERV) != 0)
     return "nowhere";
-  const bool is_ipv6 = as_sockaddr(bytes_)->sa_family == AF_INET6;
-  return (is_ipv6 ? '[' + std::string(host) + ']' : std::string(host)) + ':' + port;
+  return (is_ipv6() ? '[' + std::string(host) + ']' : std::string(host)) + ':' + port;
+}
+
+bool Address::is_ipv6() const noexcept { return size_ > 0 && as_sockaddr(bytes_)->sa_family == AF_INET6; }
+
+/// It is in the same place for both families.
+std::uint16_t Address::port() const noexcept {
+  static_assert(offsetof(sockaddr_in, sin_port) == offsetof(sockaddr_in6, sin6_port));
+  std::uint16_t port = 0;
+  std::memcpy(&port, bytes_ + offsetof(sockaddr_in, sin_port), sizeof port);
+  return ntohs(port);
 }
 
 std::uint64_t Address::key() const noexcept {
@@ -85,7 +101,7 @@ std::uint64_t Address::key() const noexcept {
 
 bool Address::is_loopback() const noexcept {
   if (size_ == 0) return false;
-  if (as_sockaddr(bytes_)->sa_family == AF_INET6) {
+  if (is_ipv6()) {
     sockaddr_in6 address{};
     std::memcpy(&address, bytes_, sizeof address);
     return IN6_IS_ADDR_LOOPBACK(&address.sin6_addr);
@@ -93,6 +109,16 @@ bool Address::is_loopback() const noexcept {
   sockaddr_in address{};
   std::memcpy(&address, bytes_, sizeof address);
   return ntohl(address.sin_addr.s_addr) >> 24 == 127;
+}
+
+std::span<const std::uint8_t> Address::host() const noexcept {
+  constexpr std::size_t kMapped = 12, kIpv4 = 4, kNetwork = 8;  // [bytes]
+  if (size_ == 0) return {};
+  const auto all = bytes();
+  if (as_sockaddr(bytes_)->sa_family != AF_INET6) return all.subspan(offsetof(sockaddr_in, sin_addr), kIpv4);
+  const auto host = all.subspan(offsetof(sockaddr_in6, sin6_addr), sizeof(in6_addr));
+  constexpr std::array<std::uint8_t, kMapped> kPrefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF};
+  return std::ranges::equal(host.first(kMapped), kPrefix) ? host.subspan(kMapped) : host.first(kNetwork);
 }
 
 bool operator==(const Address& a, const Address& b) noexcept {
@@ -113,10 +139,11 @@ Result<UdpSocket> UdpSocket::connect(const Address& peer) {
   return socket;
 }
 
-UdpSocket::UdpSocket(UdpSocket&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
+UdpSocket::UdpSocket(UdpSocket&& other) noexcept : handle_(std::exchange(other.handle_, -1)), refused_(other.refused_) {}
 
 UdpSocket& UdpSocket::operator=(UdpSocket&& other) noexcept {
   std::swap(handle_, other.handle_);
+  std::swap(refused_, other.refused_);
   return *this;
 }
 
@@ -133,8 +160,35 @@ Address UdpSocket::own() const noexcept {
   return out;
 }
 
+std::size_t UdpSocket::ask_room(std::size_t bytes) noexcept {
+  const int wanted = static_cast<int>(std::min<std::size_t>(bytes, 1U << 30));
+  bool is_given = false;
+#ifdef SO_RCVBUFFORCE
+  is_given = ::setsockopt(handle_, SOL_SOCKET, SO_RCVBUFFORCE, &wanted, sizeof wanted) == 0;  // of administrators: without limit
+#endif
+  if (!is_given) ::setsockopt(handle_, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof wanted);
+  int given = 0;
+  socklen_t size = sizeof given;
+  if (::getsockopt(handle_, SOL_SOCKET, SO_RCVBUF, &given, &size) != 0) return 0;
+#ifdef __linux__
+  given /= 2;  // it doubles what it was asked for, for its own books
+#endif
+  return static_cast<std::size_t>(given);
+}
+
+std::uint64_t UdpSocket::dropped() const noexcept {
+#ifdef __linux__
+  std::uint32_t memory[SK_MEMINFO_VARS]{};
+  socklen_t size = sizeof memory;
+  if (::getsockopt(handle_, SOL_SOCKET, SO_MEMINFO, memory, &size) == 0) return memory[SK_MEMINFO_DROPS];
+#endif
+  return 0;
+}
+
 bool UdpSocket::send(std::span<const std::uint8_t> datagram) noexcept {
-  return ::send(handle_, datagram.data(), datagram.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(datagram.size());
+  if (::send(handle_, datagram.data(), datagram.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(datagram.size())) return true;
+  refused_ = refused_ || errno == ECONNREFUSED;
+  return false;
 }
 
 bool UdpSocket::send(const Address& to, std::span<const std::uint8_t> datagram) noexcept {
@@ -149,11 +203,13 @@ std::optional<UdpSocket::Received> UdpSocket::receive(std::span<std::uint8_t> bu
     socklen_t size = sizeof out.from.bytes_;
     const ssize_t got = ::recvfrom(handle_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(out.from.bytes_), &size);
     if (got >= 0) {
+      refused_ = false;
       out.from.size_ = size;
       out.bytes = buffer.first(static_cast<std::size_t>(got));
       return out;
     }
     if (errno == EAGAIN || errno == EWOULDBLOCK) return std::nullopt;
+    refused_ = refused_ || errno == ECONNREFUSED;
   }
   return std::nullopt;
 }

@@ -20,10 +20,17 @@ class Address {
   /// err  invalid_argument R-NET-1: not HOST:PORT, no port from 0 to 65535, or no such host
   static Result<Address> parse(std::string_view text);
 
+  /// Whether it reads HOST:PORT, of whatever host: parse() then fails for a host that nobody knows.
+  static bool has_form(std::string_view text);
+
   std::string text() const;  ///< as parse() takes it, in numbers
+  std::uint16_t port() const noexcept;
+  bool is_ipv6() const noexcept;
   bool is_loopback() const noexcept;
   std::uint64_t key() const noexcept;  ///< equal for equal addresses, else almost certainly different; never 0
   std::span<const std::uint8_t> bytes() const noexcept { return {bytes_, size_}; }  ///< equal for equal addresses only
+  /// What names the host, without its port: four bytes of IPv4, also within IPv6, or the first eight of IPv6, which a host has for itself.
+  std::span<const std::uint8_t> host() const noexcept;
   friend bool operator==(const Address& a, const Address& b) noexcept;
 
  private:
@@ -54,6 +61,12 @@ class UdpSocket {
   Address own() const noexcept;
   int handle() const noexcept { return handle_; }  ///< for poll()
 
+  /// Room for datagrams that wait for receive(): some 700 bytes for a small one.   out  [bytes] that the system gives
+  std::size_t ask_room(std::size_t bytes) noexcept;
+  std::uint64_t dropped() const noexcept;  ///< datagrams that found no room; 0 where the system does not tell
+  /// The peer's machine answered to the last datagram that nobody listens there.   pre  made by connect()
+  bool is_refused() const noexcept { return refused_; }
+
   /// false: the system did not take it (its queue is full, nobody listens there, it is too long). That is a loss like any other.
   bool send(std::span<const std::uint8_t> datagram) noexcept;  ///< pre  made by connect()
   bool send(const Address& to, std::span<const std::uint8_t> datagram) noexcept;
@@ -68,6 +81,7 @@ class UdpSocket {
  private:
   explicit UdpSocket(int handle) noexcept : handle_(handle) {}
   int handle_ = -1;
+  bool refused_ = false;
 };
 
 }  // namespace tactus::net

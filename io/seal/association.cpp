@@ -79,7 +79,6 @@ constexpr const char* kPriorities =
     "NORMAL:-VERS-ALL:+VERS-DTLS1.2:-KX-ALL:+ECDHE-PSK:-CIPHER-ALL:+CHACHA20-POLY1305:-GROUP-ALL:+GROUP-X25519:+GROUP-SECP256R1";
 constexpr unsigned kNever = 24 * 3600 * 1000;  // [ms]; the time to repeat is above the whole time, so GnuTLS does neither
 constexpr int kMostRecords = 16;               // of a datagram: GnuTLS returns after each that it drops
-constexpr int kUserUnknown = 1;                // GnuTLS goes on with a random key, so that nobody can tell
 
 std::uint64_t read(std::span<const std::uint8_t> bytes) noexcept {
   std::uint64_t out = 0;
@@ -94,20 +93,6 @@ bool copy(std::span<const std::uint8_t> secret, gnutls_datum_t& out) noexcept {
   std::memcpy(out.data, secret.data(), secret.size());
   out.size = static_cast<unsigned>(secret.size());
   return true;
-}
-
-int give_client_key(gnutls_session_t session, char** name, gnutls_datum_t* secret) {
-  const Key& key = *static_cast<const Key*>(gnutls_session_get_ptr(session));
-  *name = static_cast<char*>(gnutls_calloc(1, key.name().size() + 1));
-  if (*name == nullptr) return GNUTLS_E_MEMORY_ERROR;
-  std::copy(key.name().begin(), key.name().end(), *name);
-  return copy(key.secret(), *secret) ? 0 : GNUTLS_E_MEMORY_ERROR;
-}
-
-int give_server_key(gnutls_session_t session, const char* name, gnutls_datum_t* secret) {
-  const Key& key = *static_cast<const Key*>(gnutls_session_get_ptr(session));
-  if (key.name() != name) return kUserUnknown;
-  return copy(key.secret(), *secret) ? 0 : GNUTLS_E_MEMORY_ERROR;
 }
 
 }  // namespace
@@ -129,13 +114,21 @@ std::optional<std::uint8_t> message_type(std::span<const std::uint8_t> wire) noe
   return wire[kRecordHead];
 }
 
-Result<std::unique_ptr<const Context>> Context::create(Key key, const Limits& limits) try {
-  std::unique_ptr<Context> out(new Context(std::move(key), limits));
+bool says_wrong_key(std::span<const std::uint8_t> wire) noexcept {
+  constexpr std::uint8_t kFatal = 2;
+  const auto head = read_head(wire);
+  if (!head || head->content != Content::alert || head->epoch != 0 || wire.size() != kRecordHead + 2) return false;
+  return wire[kRecordHead] == kFatal && (wire[kRecordHead + 1] == kDecryptError || wire[kRecordHead + 1] == kUnknownIdentity);
+}
+
+Result<std::unique_ptr<Context>> Context::create(KeyList keys, const Limits& limits) try {
+  TACTUS_TRY(Key decoy, Key::generate("nobody"));
+  std::unique_ptr<Context> out(new Context(std::move(keys), std::move(decoy), limits));
   if (gnutls_priority_init(&out->priority_, kPriorities, nullptr) != 0 ||
       gnutls_psk_allocate_client_credentials(&out->client_) != 0 || gnutls_psk_allocate_server_credentials(&out->server_) != 0)
     return fail(Errc::internal, "R-SEA-6");
-  gnutls_psk_set_client_credentials_function(out->client_, give_client_key);
-  gnutls_psk_set_server_credentials_function(out->server_, give_server_key);
+  gnutls_psk_set_client_credentials_function(out->client_, Association::give_client_key);
+  gnutls_psk_set_server_credentials_function(out->server_, Association::give_server_key);
   return out;
 } catch (const std::bad_alloc&) {
   return out_of_memory();
@@ -153,7 +146,7 @@ Result<std::unique_ptr<Association>> Association::create(const Context& context,
       gnutls_priority_set(out->session_, context.priority_) != 0 ||
       gnutls_credentials_set(out->session_, static_cast<gnutls_credentials_type_t>(credentials), of) != 0)
     return fail(Errc::internal, "R-SEA-6");
-  gnutls_session_set_ptr(out->session_, const_cast<Key*>(&context.key_));  // only read, by the two functions above
+  gnutls_session_set_ptr(out->session_, out.get());
   gnutls_transport_set_ptr(out->session_, out.get());
   gnutls_transport_set_push_function(out->session_, push);
   gnutls_transport_set_pull_function(out->session_, pull);
@@ -177,6 +170,23 @@ Result<std::unique_ptr<Association>> Association::server(const Context& context,
 
 Association::~Association() {
   if (session_ != nullptr) gnutls_deinit(session_);
+}
+
+int Association::give_client_key(gnutls_session_t session, char** name, gnutls_datum_t* secret) noexcept {
+  const auto& in = *static_cast<const Association*>(gnutls_session_get_ptr(session));
+  const Key& key = *in.context_.keys_.users().front().key;
+  *name = static_cast<char*>(gnutls_calloc(1, key.name().size() + 1));
+  if (*name == nullptr) return GNUTLS_E_MEMORY_ERROR;
+  std::copy(key.name().begin(), key.name().end(), *name);
+  return copy(key.secret(), *secret) ? 0 : GNUTLS_E_MEMORY_ERROR;
+}
+
+int Association::give_server_key(gnutls_session_t session, const char* name, gnutls_datum_t* secret) noexcept {
+  auto& in = *static_cast<Association*>(gnutls_session_get_ptr(session));
+  const KeyList::User* const user = in.context_.keys_.find(name);
+  in.was_asked_ = true;
+  if (user != nullptr) in.key_ = user->key;
+  return copy((user != nullptr ? *user->key : in.context_.decoy_).secret(), *secret) ? 0 : GNUTLS_E_MEMORY_ERROR;
 }
 
 ssize_t Association::push(gnutls_transport_ptr_t self, const void* bytes, std::size_t size) noexcept {
@@ -225,7 +235,18 @@ Association::Stage Association::advance(std::span<const std::uint8_t> wire) noex
   }
   inbox_ = {};
   if (failed_to_speak_) stage_ = Stage::broken;
+  note_records(wire);
   return stage_;
+}
+
+/// GnuTLS drops what is not authentic without a word. A client that has the key is open by the first of its sealed records.
+void Association::note_records(std::span<const std::uint8_t> wire) noexcept {
+  is_key_wrong_ = false;
+  if (!was_asked_ || stage_ != Stage::handshake || !read_head(wire)) return;
+  for (; !wire.empty(); wire = wire.subspan(kRecordHead + read(wire.subspan(11, 2)))) {
+    was_changed_ = was_changed_ || wire[0] == static_cast<std::uint8_t>(Content::change_cipher_spec);
+    is_key_wrong_ = is_key_wrong_ || (was_changed_ && read(wire.subspan(3, 2)) == 1);
+  }
 }
 
 Result<std::span<const std::uint8_t>> Association::seal(std::span<const std::uint8_t> plain,
@@ -288,7 +309,16 @@ Association::Inside Association::open(const RecordHead& head, std::span<const st
   if (gnutls_error_is_fatal(static_cast<int>(size)) == 0)
     return {};  // it wants to begin anew, or warns: authentic, and of no use
   stage_ = Stage::broken;
-  return {Opened::closed, {}};
+  const bool is_denied = size == GNUTLS_E_FATAL_ALERT_RECEIVED && gnutls_alert_get(session_) == kAccessDenied;
+  return {is_denied ? Opened::denied : Opened::closed, {}};
+}
+
+std::span<const std::uint8_t> Association::alert(std::uint8_t what, std::span<std::uint8_t> out) noexcept {
+  outbox_ = out;
+  sealed_size_ = 0;
+  const int done = gnutls_alert_send(session_, GNUTLS_AL_FATAL, static_cast<gnutls_alert_description_t>(what));
+  outbox_ = {};
+  return out.first(done == 0 ? sealed_size_ : 0);
 }
 
 std::span<const std::uint8_t> Association::close() noexcept {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The key of sealed sessions and the file that holds it. spec/70-session.md section 11.2.
+/// The key of a user of sealed sessions, and the file that holds it. spec/70-session.md section 11.2.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -34,6 +35,7 @@ struct Counters {
   std::uint64_t replayed = 0;     ///< records dropped that had been heard, or were too old to tell
   std::uint64_t strangers = 0;    ///< datagrams dropped that belong to no association and no handshake, or are no record
   std::uint64_t cookies = 0;      ///< answers to addresses that had not proven themselves
+  std::uint64_t limited = 0;      ///< datagrams dropped before anything was done: their sender said too many
 };
 
 // ==== key ====
@@ -45,22 +47,26 @@ class Key {
 
   /// A new one.   err  invalid_argument R-KEY-4: the name;  internal R-SEA-6: the system has no random bits
   static Result<Key> generate(std::string_view name);
-  /// The text of a key file.   in  file  for the message   err  malformed R-KEY-3, with the line
+  /// The text of a key file.   in  file  for the message   err  malformed R-KEY-3, with the line;  invalid R-KEY-7: a key list
   static tl::expected<Key, Diagnostic> parse(std::string_view text, const std::string& file);
-  /// err  io R-KEY-1, with errno;  invalid R-KEY-2: others can read it;  malformed R-KEY-3
+  /// in   secret  hexadecimal digits in lower case   out  nothing: the name or they are not what they must be
+  static std::optional<Key> from(std::string_view name, std::string_view secret) noexcept;
+  /// err  io R-KEY-1, with errno;  invalid R-KEY-2: others can read it;  as parse()
   static tl::expected<Key, Diagnostic> read(const std::string& path);
   /// Make a new file that only its owner can read.   err  io R-KEY-1, with errno: EEXIST if there is anything at `path`
   Result<void> write(const std::string& path) const;
 
   std::string_view name() const noexcept { return {name_.data(), name_size_}; }
   std::span<const std::uint8_t, kSecret> secret() const noexcept { return secret_; }
+  static bool is_name(std::string_view text) noexcept;
+  friend bool operator==(const Key& a, const Key& b) noexcept;  ///< of secrets in a time that does not tell where they differ
 
   Key(Key&& other) noexcept;
   Key& operator=(Key&& other) noexcept;
   ~Key();
 
  private:
-  Key() = default;
+  explicit Key(std::string_view name) noexcept;
   void wipe() noexcept;
 
   std::array<char, kLongestName> name_{};

@@ -23,11 +23,11 @@ struct Client::Impl {
     repeat_at = now + wait;
   }
 
-  std::unique_ptr<const Context> context;
+  std::unique_ptr<Context> context;
   std::unique_ptr<Association> link;
   std::uint64_t began = 0, repeat_at = 0;  // [us]
   unsigned repetitions = 0;
-  bool is_to_send = false, has_cookie = false, was_answered = false, is_closed = false;
+  bool is_to_send = false, has_cookie = false, was_answered = false, is_doubted = false, is_closed = false;
   std::span<const std::uint8_t> goodbye;
   std::array<std::uint8_t, kLargestSealed> opened{}, sealed{};
   Counters counters;
@@ -78,6 +78,7 @@ void Client::Impl::advance(std::uint64_t now, std::span<const std::uint8_t> wire
   }
 }
 
+bool Client::is_doubted() const noexcept { return impl_->is_doubted && !is_open(); }
 bool Client::is_open() const noexcept { return impl_->link->stage() == Association::Stage::open; }
 
 Result<std::optional<std::span<const std::uint8_t>>> Client::open(std::uint64_t now,
@@ -91,6 +92,7 @@ Result<std::optional<std::span<const std::uint8_t>>> Client::open(std::uint64_t 
   }
   const bool is_handshake = head->content == Content::handshake || head->content == Content::change_cipher_spec;
   if (in.link->stage() != Association::Stage::open) {
+    in.is_doubted = in.is_doubted || (in.was_answered && says_wrong_key(wire));  // it changes nothing else
     if (!is_handshake || in.link->stage() == Association::Stage::broken) return std::nullopt;
     if (!in.has_cookie && message_type(wire) != kHelloVerifyRequest) return std::nullopt;  // the server has said nothing else yet
     in.has_cookie = true;
@@ -121,6 +123,9 @@ Result<std::optional<std::span<const std::uint8_t>>> Client::open(std::uint64_t 
     case Association::Opened::closed:
       in.is_closed = true;
       return fail(Errc::state, "R-SEA-3");
+    case Association::Opened::denied:
+      in.is_closed = true;
+      return fail(Errc::state, "R-SEA-7");
   }
   return std::nullopt;
 }

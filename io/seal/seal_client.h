@@ -25,9 +25,12 @@ class Client {
   static Result<Client> create(Key key, std::uint64_t now, const Limits& limits = {});
 
   bool is_open() const noexcept;  ///< the handshake is done
+  /// Somebody says that the key is wrong: most likely the server, some milliseconds after it heard what was made with the key. Anyone can
+  /// say so: tell the user, and go on, as this end does.
+  bool is_doubted() const noexcept;
   /// A datagram came.   out  the session's datagram in it, valid until the next call; nothing: it is of the seal itself, or noise
   /// time  some 0.1 ms while the handshake runs, then a few us
-  /// err   state R-SEA-3;  limit_exceeded R-SEA-4;  internal R-SEA-6
+  /// err   state R-SEA-3;  limit_exceeded R-SEA-4;  internal R-SEA-6;  state R-SEA-7: the server no longer permits this user
   Result<std::optional<std::span<const std::uint8_t>>> open(std::uint64_t now, std::span<const std::uint8_t> wire) noexcept;
   /// A datagram of the session, sealed: valid until the next call.   pre  is_open()
   /// err   limit_exceeded R-SEA-4: final;  limit_exceeded R-SEA-5: it is empty or too large, or the association was closed

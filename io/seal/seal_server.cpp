@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/seal/seal_server.h>
 
+#include <gnutls/crypto.h>
+
 #include <algorithm>
 #include <array>
 #include <deque>
-#include <vector>
 
 #include <tactus/base/rule.h>
+#include <tactus/net/rate_limit.h>
 #include <tactus/seal/association.h>
 
 namespace tactus::seal {
@@ -14,7 +16,8 @@ namespace {
 
 constexpr std::uint64_t kPatience =
     10'000'000;                                 // [us] for a handshake; then for the session in it; for repeating the last flight
-constexpr std::uint64_t kRepeatEvery = 50'000;  // [us] at most
+constexpr std::uint64_t kRepeatEvery = 50'000;  // [us] at most, also of alerts
+constexpr int kRepetitions = 3;                 // of what ends an association
 constexpr std::size_t kInbox = 4;               // datagrams of a handshake that wait
 constexpr std::size_t kAmplification = 3;       // to an address that has not proven itself
 
@@ -27,8 +30,9 @@ struct Peer {
   net::Address at;
   Random random{};
   gnutls_dtls_prestate_st cookie{};
-  std::uint64_t began = 0, spoke_at = 0;  // [us]
-  std::unique_ptr<Association> link;      // null until the first step
+  std::uint64_t began = 0, spoke_at = 0, alerted_at = 0;  // [us]
+  net::RateLimit limit;
+  std::unique_ptr<Association> link;  // null until the first step
   std::deque<Bytes> inbox;
   std::uint64_t id = 0;  // of an association
 };
@@ -51,6 +55,7 @@ Random random_of(std::span<const std::uint8_t> hello) {
 }  // namespace
 
 struct Server::Impl {
+  bool is_too_much(std::uint64_t now, const net::Address& from, std::size_t bytes) noexcept;
   void hear_hello(std::uint64_t now, const net::Address& from, std::span<const std::uint8_t> wire);
   void hear_handshake(std::uint64_t now, const net::Address& from, std::span<const std::uint8_t> wire);
   void take(Peer& peer, std::span<const std::uint8_t> wire);
@@ -67,9 +72,10 @@ struct Server::Impl {
     if (!bytes.empty() && out.size() < kMost) out.emplace_back(to, Bytes(bytes.begin(), bytes.end()));
   }
 
-  std::unique_ptr<const Context> context;
+  std::unique_ptr<Context> context;
   ServerOptions options;
   std::optional<Cookies> cookies;
+  std::optional<net::StrangersLimit> strangers;
   std::vector<std::unique_ptr<Peer>> peers, shaking;  // with an association; with a handshake, in the order of their beginning
   std::size_t next = 0;                               // of shaking
   std::uint64_t last_id = 0;
@@ -86,10 +92,13 @@ Server::Server(Server&&) noexcept = default;
 Server& Server::operator=(Server&&) noexcept = default;
 Server::~Server() = default;
 
-Result<Server> Server::create(Key key, std::uint64_t now, const ServerOptions& options) try {
+Result<Server> Server::create(KeyList keys, std::uint64_t now, const ServerOptions& options) try {
   auto impl = std::make_unique<Impl>();
   impl->options = options;
-  TACTUS_TRY(impl->context, Context::create(std::move(key), options.limits));
+  TACTUS_TRY(impl->context, Context::create(std::move(keys), options.limits));
+  std::uint64_t secret = 0;
+  if (gnutls_rnd(GNUTLS_RND_KEY, &secret, sizeof secret) != 0) return fail(Errc::internal, "R-SEA-6");
+  impl->strangers.emplace(secret);
   TACTUS_TRY(impl->cookies, Cookies::create(now));
   return Server(std::move(impl));
 } catch (const std::bad_alloc&) {
@@ -99,6 +108,10 @@ Result<Server> Server::create(Key key, std::uint64_t now, const ServerOptions& o
 std::optional<Server::Opened> Server::open(std::uint64_t now, const net::Address& from,
                                            std::span<const std::uint8_t> wire) noexcept try {
   Impl& in = *impl_;
+  if (in.is_too_much(now, from, wire.size())) {
+    ++in.counters.limited;
+    return std::nullopt;
+  }
   const auto head = read_head(wire);
   if (!head || wire.size() > kLargestSealed) {
     ++in.counters.strangers;
@@ -115,6 +128,13 @@ std::optional<Server::Opened> Server::open(std::uint64_t now, const net::Address
   return in.hear_record(*head, from, wire);
 } catch (const std::bad_alloc&) {
   return std::nullopt;  // a datagram lost
+}
+
+bool Server::Impl::is_too_much(std::uint64_t now, const net::Address& from, std::size_t bytes) noexcept {
+  if (const auto open = find(peers, from); open != peers.end()) return !(*open)->limit.take(now, bytes, net::kClientRate);
+  if (const auto shakes = find(shaking, from); shakes != shaking.end())
+    return !(*shakes)->limit.take(now, bytes, net::kHandshakeRate);
+  return !strangers->take(now, from, bytes);
 }
 
 void Server::Impl::hear_hello(std::uint64_t now, const net::Address& from, std::span<const std::uint8_t> wire) {
@@ -184,6 +204,7 @@ std::optional<Server::Opened> Server::Impl::hear_record(const RecordHead& head, 
     case Association::Opened::nothing:
       break;
     case Association::Opened::closed:
+    case Association::Opened::denied:
     case Association::Opened::used_up:
       forget(peer.id);
       break;
@@ -224,6 +245,10 @@ void Server::Impl::step(std::uint64_t now, Peer& peer) {
   }
   const auto stage = peer.link->advance(wire);
   if (stage == Association::Stage::broken) return;
+  if (peer.link->is_key_wrong() && now >= peer.alerted_at + kRepeatEvery) {
+    peer.alerted_at = now;
+    return say(peer.at, peer.link->alert(kDecryptError, sealed));
+  }
   if (peer.link->has_spoken() || (!peer.link->flight().empty() && now >= peer.spoke_at + kRepeatEvery)) speak(now, peer);
 }
 
@@ -246,6 +271,26 @@ void Server::Impl::forget(std::uint64_t id) {
   if (found == peers.end()) return;
   closed.push_back(id);
   peers.erase(found);
+}
+
+std::vector<std::uint64_t> Server::replace(KeyList keys) {
+  Impl& in = *impl_;
+  const auto is_gone = [&keys](const auto& peer) { return peer->link && peer->link->key() && !keys.holds(*peer->link->key()); };
+  std::vector<std::uint64_t> out;
+  for (const auto& peer : in.peers)
+    if (is_gone(peer)) out.push_back(peer->id);
+  for (int i = 0; i < kRepetitions; ++i)
+    for (const auto& peer : in.peers)
+      if (is_gone(peer)) in.say(peer->at, peer->link->alert(kAccessDenied, in.sealed));
+  std::erase_if(in.peers, is_gone);
+  std::erase_if(in.shaking, is_gone);
+  in.context->replace(std::move(keys));
+  return out;
+}
+
+const KeyList::User* Server::user_of(std::uint64_t peer) const noexcept {
+  const auto found = find(impl_->peers, peer);
+  return found == impl_->peers.end() ? nullptr : impl_->context->keys().find((*found)->link->key()->name());
 }
 
 Result<net::Transmit> Server::seal(std::uint64_t peer, std::span<const std::uint8_t> plain) noexcept try {
@@ -305,6 +350,11 @@ std::optional<std::uint64_t> Server::poll_closed() noexcept {
 net::Address Server::address_of(std::uint64_t peer) const noexcept {
   const auto found = find(impl_->peers, peer);
   return found == impl_->peers.end() ? net::Address() : (*found)->at;
+}
+
+std::uint64_t Server::limited_of(std::uint64_t peer) const noexcept {
+  const auto found = find(impl_->peers, peer);
+  return found == impl_->peers.end() ? 0 : (*found)->limit.dropped();
 }
 
 std::size_t Server::peers() const noexcept { return impl_->peers.size(); }
