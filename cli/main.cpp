@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
       "  tactus compare push.mcap replica.mcap -p 4%              measure the error\n"
       "`tactus help COMMAND` lists all options. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.\n"
       "Exit status: 0 done, 1 an input was refused or the work failed, 2 the arguments are wrong,\n"
-      "3 done, but a bound that the stream declares or an option sets is broken,\n"
+      "3 done, but a bound that the stream declares or an option sets is broken, or contacts of the simulation were not solved,\n"
       "128 + n stopped by signal n, such as 130 by Ctrl-C.");
   Action action;
   bool wants_version = false, as_json = false;

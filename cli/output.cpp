@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -84,9 +85,13 @@ int rename_to_free(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-RemovedOnSignal::RemovedOnSignal(std::string path) : path_(std::move(path)) {
+void remove_unfinished_on_signals() {
   static std::once_flag once;
   std::call_once(once, catch_signals);
+}
+
+RemovedOnSignal::RemovedOnSignal(std::string path) : path_(std::move(path)) {
+  remove_unfinished_on_signals();
   for (auto& entry : unfinished) {
     const char* none = nullptr;
     if (entry.compare_exchange_strong(none, path_.c_str())) return;
@@ -102,6 +107,14 @@ RemovedOnSignal::~RemovedOnSignal() {
 
 Descriptor::~Descriptor() {
   if (is_open()) ::close(number_);
+}
+
+Descriptor lock_beside(const std::string& path) {
+  std::error_code ignored;
+  const std::string folder = fs::absolute(path, ignored).parent_path();
+  Descriptor out(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (out.is_open()) static_cast<void>(flock(out.number(), LOCK_EX));
+  return out;
 }
 
 Outcome OutputFile::check_free(const std::string& path, Existing existing, const std::vector<std::string>& others) {

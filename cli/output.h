@@ -14,6 +14,9 @@
 
 namespace tactus::cli {
 
+/// From now on an interrupt, a hang-up or a request to end removes what is unfinished. Handlers that others set later stay.
+void remove_unfinished_on_signals();
+
 /// Removes a file, or a folder that is empty, when an interrupt, a hang-up or a request to end stops the program.
 class RemovedOnSignal {
  public:
@@ -42,6 +45,10 @@ class Descriptor {
  private:
   int number_;
 };
+
+/// As long as it is there, others who change a file in the same folder wait, where the file system has locks. The file is replaced, so that a
+/// lock of its own would be gone, and a file for the lock would be left behind.
+Descriptor lock_beside(const std::string& path);
 
 /// Something to write to PATH: goes to a new file beside it, whose name nobody can foresee, and takes the name PATH when keep() is
 /// called; otherwise it is removed. Links are never followed, neither at PATH nor at the other name, and two that write to one PATH

@@ -149,6 +149,18 @@ tactus_status tactus_receiver_poses(const tactus_receiver* receiver, int64_t tic
   });
 }
 
+tactus_status tactus_receiver_levels(const tactus_receiver* receiver, int64_t tick, uint32_t first, size_t count, uint8_t* out,
+                                     tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(Receiver * of, receiver_of(receiver));
+    TACTUS_CHECK(check_tick(tick));
+    const std::size_t there = of->scene()->objects.size();
+    if (first > there || count > there - first || (out == nullptr && count > 0)) return refuse();
+    for (std::size_t i = 0; i < count; ++i) out[i] = of->replica().lod(first + static_cast<std::uint32_t>(i), tick);
+    return TACTUS_OK;
+  });
+}
+
 tactus_status tactus_receiver_displacements(tactus_receiver* receiver, uint32_t object, int64_t tick, float* out, size_t capacity,
                                             tactus_error* error) {
   return call(error, [&]() -> Outcome {

@@ -2,6 +2,7 @@
 #include <tactus/scene/scene.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 
@@ -52,7 +53,9 @@ tactus_scene_info info_of(const Scene& scene) noexcept {
           .eased = scene.is_eased,
           .has_bounds = scene.bounds.has_value(),
           .has_loads = scene.loads.has_value(),
-          .load_users = scene.loads ? scene.loads->users : 0u};
+          .load_users = scene.loads ? scene.loads->users : 0u,
+          .interest_full = scene.interest ? std::ldexp(scene.interest->full, -scene.grid.position) : 0,
+          .interest_reach = scene.interest ? std::ldexp(scene.interest->reach, -scene.grid.position) : 0};
 }
 
 }  // namespace

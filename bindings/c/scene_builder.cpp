@@ -41,7 +41,9 @@ constexpr tactus_scene_options kSceneOptions{.size = sizeof(tactus_scene_options
                                              .reserved = 0,
                                              .extrapolation = 2,
                                              .gravity = {},
-                                             .friction = 0};
+                                             .friction = 0,
+                                             .interest_full = 0,
+                                             .interest_reach = 0};
 
 constexpr double kChosen = -1;
 constexpr std::size_t kMostShapes = 1 << 16;  ///< to find clusters on
@@ -92,7 +94,9 @@ constexpr tactus_elastic_physics kElasticPhysics{.size = sizeof(tactus_elastic_p
                                                  .stiffness_damping = 0,
                                                  .gravity = {},
                                                  .coupling = 0,
-                                                 .friction = 0};
+                                                 .friction = 0,
+                                                 .method = TACTUS_METHOD_BACKWARD_EULER,
+                                                 .sub_steps = 1};
 
 bool are_bytes(std::initializer_list<std::uint32_t> values) noexcept {
   return std::ranges::all_of(values, [](std::uint32_t value) { return value <= 0xff; });
@@ -109,6 +113,7 @@ void apply(const tactus_scene_options& o, SceneBuilder& builder) {
       .baselines(static_cast<std::uint8_t>(o.baselines))
       .rigid_profile(static_cast<RigidProfile>(o.rigid_profile))
       .motion({.gravity = vec_of(o.gravity), .friction = o.friction});
+  if (o.interest_full != 0 || o.interest_reach != 0) builder.interest(o.interest_full, o.interest_reach);
   if (o.has_loads != 0)
     builder.loads({.force_exp = static_cast<std::uint8_t>(o.force_exp), .users = static_cast<std::uint8_t>(o.load_users)});
 }
@@ -163,8 +168,10 @@ Result<DeformableCoding> coding_of(const tactus_deformable_options& o, std::size
   return out;
 }
 
-/// err  R-ELA-2, 3 there is too much of it; R-API-12 null
+/// err  R-ELA-1, 5 an unknown method, sub-steps; R-ELA-2, 3 there is too much of it; R-API-12 null
 Result<ElasticPhysics> physics_of(const tactus_elastic_physics& p) {
+  if (p.method < TACTUS_METHOD_BACKWARD_EULER || p.method > TACTUS_METHOD_VELOCITY_VERLET) return fail(Errc::invalid, "R-ELA-1");
+  if (p.sub_steps > ElasticBody::kMostSubSteps) return fail(Errc::invalid, "R-ELA-5");
   if (p.material_count > ElasticBody::kMaxMaterials) return fail(Errc::invalid, "R-ELA-2");
   if (p.inner_count > kMaxMeshVertices || p.fixed_count > kMaxMeshVertices || p.tet_count > kMaxMeshTriangles)
     return fail(Errc::invalid, "R-ELA-3");
@@ -181,7 +188,9 @@ Result<ElasticPhysics> physics_of(const tactus_elastic_physics& p) {
                               .stiffness_damping = p.stiffness_damping,
                               .gravity = vec_of(p.gravity),
                               .coupling = p.coupling,
-                              .friction = p.friction}};
+                              .friction = p.friction,
+                              .method = static_cast<ElasticBody::Method>(p.method),
+                              .sub_steps = static_cast<std::uint8_t>(p.sub_steps)}};
   if (p.material != nullptr) std::copy_n(p.material, p.tet_count, out.body.material.begin());
   for (std::size_t i = 0; i < materials.size(); i += 3)
     out.body.materials.push_back({materials[i], materials[i + 1], materials[i + 2]});

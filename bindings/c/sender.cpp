@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/sender.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <span>
 
 #include "bounds.h"
 #include "handles.h"
@@ -142,6 +145,17 @@ tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t answer, doub
     if (sender == nullptr) return refuse();
     if (answer < 0 || answer > kLastTick || !(loss >= 0 && loss <= 1)) return fail(Errc::invalid_argument, "R-API-4");
     sender->sender.set_link({.answer = answer, .loss = loss});
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_sender_look_from(tactus_sender* sender, const double* places, size_t count, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (sender == nullptr || (places == nullptr && count > 0)) return refuse();
+    std::array<Vec3, 2> out;
+    const std::size_t used = std::min(count, out.size());
+    for (std::size_t i = 0; i < used; ++i) out[i] = {places[3 * i], places[3 * i + 1], places[3 * i + 2]};
+    sender->sender.look_from(std::span(out).first(used));
     return TACTUS_OK;
   });
 }

@@ -2,11 +2,13 @@
 #include <tactus/session/session_client.h>
 
 #include <memory>
+#include <utility>
 
 #include "session.h"
 
 struct tactus_client {
   tactus::SessionClient client;
+  std::uint64_t token = 0;
   tactus::c::Clock clock{};
   tactus_receiver receiver{};
 
@@ -31,14 +33,17 @@ tactus_client_options client_options() noexcept {
           .device_weber = defaults.device.weber_fraction,
           .playout = -1,
           .silence = defaults.silence,
-          .limits = nullptr};
+          .limits = nullptr,
+          .token = 0,
+          .seat = 0,
+          .reserved = 0};
 }
 
 Result<SessionClientOptions> session_options(const tactus_client_options* options) noexcept {
   TACTUS_TRY(const tactus_client_options o, given_or(options, client_options()));
   TACTUS_TRY(const DecodeLimits limits, limits_of(o.limits));
   if (o.role < TACTUS_ROLE_OBSERVER || o.role > TACTUS_ROLE_PARTICIPANT || o.playout < -1 || o.playout > UINT32_MAX ||
-      o.silence > kLastTime)
+      o.silence > kLastTime || o.seat > 0xff)
     return fail(Errc::invalid_argument, "R-API-4");
   SessionClientOptions out{.role = static_cast<Role>(o.role),
                            .limits = limits,
@@ -48,7 +53,8 @@ Result<SessionClientOptions> session_options(const tactus_client_options* option
                                       .weber_fraction = o.device_weber,
                                       .every_tick = o.every_tick != 0},
                            .senses_velocity = o.senses_velocity != 0,
-                           .silence = o.silence};
+                           .silence = o.silence,
+                           .seat = static_cast<std::uint8_t>(o.seat)};
   if (o.playout >= 0) out.playout.fixed = static_cast<std::uint32_t>(o.playout);
   return out;
 }
@@ -86,6 +92,9 @@ tactus_session_status status_of(const SessionStatus& status) noexcept {
   out.playout_delay = status.playout_delay;
   out.loss = status.loss;
   out.widening = out.widest = 1;
+  out.seat = status.seat;
+  out.token = status.token;
+  out.world = status.world;
   add(status.round_trip, out);
   add(status.traffic, out);
   return out;
@@ -118,7 +127,8 @@ tactus_status tactus_client_create(const tactus_client_options* options, tactus_
     if (client == nullptr) return refuse();
     TACTUS_TRY(const SessionClientOptions chosen, session_options(options));
     TACTUS_TRY(SessionClient made, SessionClient::create(chosen));
-    *client = new tactus_client{std::move(made)};
+    TACTUS_TRY(const tactus_client_options given, given_or(options, client_options()));
+    *client = new tactus_client{std::move(made), given.token};
     return TACTUS_OK;
   });
 }
@@ -127,7 +137,7 @@ void tactus_client_destroy(tactus_client* client) { delete client; }
 
 tactus_status tactus_client_open(tactus_client* client, uint64_t now, uint64_t nonce, tactus_error* error) {
   return call_at(client, now, error, [&](SessionClient& session) -> Outcome {
-    session.open(now, nonce);
+    session.open(now, nonce, std::exchange(client->token, 0));
     return TACTUS_OK;
   });
 }
@@ -164,6 +174,14 @@ tactus_status tactus_client_submit(tactus_client* client, uint64_t now, const ta
     std::optional<DeviceContact> touched;
     if (contact != nullptr) touched = {.proxy = vec_of(contact->proxy), .stiffness = contact->stiffness};
     TACTUS_CHECK(session.submit(now, sample_of(*sample), touched));
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_client_look_from(tactus_client* client, uint64_t now, const double* place, tactus_error* error) {
+  return call_at(client, now, error, [&](SessionClient& session) -> Outcome {
+    if (place == nullptr) return refuse();
+    session.look_from({place[0], place[1], place[2]});
     return TACTUS_OK;
   });
 }

@@ -24,7 +24,8 @@ tactus_server_options server_options() noexcept {
           .rate = defaults.rate,
           .silence = defaults.silence,
           .widening = defaults.widening,
-          .sender = nullptr};
+          .sender = nullptr,
+          .world = 0};
 }
 
 Result<SessionServerOptions> session_options(const tactus_server_options* options) noexcept {
@@ -35,7 +36,8 @@ Result<SessionServerOptions> session_options(const tactus_server_options* option
                            .rate = o.rate,
                            .headers = o.headers,
                            .widening = o.widening,
-                           .silence = o.silence};
+                           .silence = o.silence,
+                           .world = o.world};
   TACTUS_TRY(out.sender, options_of(o.sender));
   return out;
 }
@@ -50,6 +52,8 @@ std::uint32_t kind_of(ServerEvent::Kind kind) noexcept {
       return TACTUS_EVENT_CLOSED;
     case ServerEvent::Kind::moved:
       return TACTUS_EVENT_MOVED;
+    case ServerEvent::Kind::refused:
+      return TACTUS_EVENT_REFUSED;
     case ServerEvent::Kind::widened:
       break;
   }
@@ -73,6 +77,8 @@ tactus_session_status status_of(const ClientStatus& status) noexcept {
   out.state = static_cast<std::uint32_t>(status.state);
   out.client = status.client;
   out.role = static_cast<std::uint32_t>(status.role);
+  out.seat = status.seat;
+  out.wanted_seat = status.wanted_seat;
   out.peer = status.peer;
   out.loss = status.loss;
   out.widening = status.widening;
@@ -155,6 +161,15 @@ tactus_status tactus_server_replace_scene(tactus_server* server, const tactus_sc
     TruthBuffer truth(*scene->shared);
     TACTUS_CHECK(to->replace_scene(scene->shared, now));
     server->truth = std::move(truth);
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_server_seat(tactus_server* server, uint32_t client, uint32_t seat, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(const std::uint16_t number, client_of(server, client));
+    if (seat > TACTUS_ONLY_LOOKS_ON) return refuse();
+    server->server.seat(number, static_cast<std::uint8_t>(seat));
     return TACTUS_OK;
   });
 }

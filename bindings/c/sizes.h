@@ -39,20 +39,23 @@ TACTUS_SIZED(tactus_deformable_bounds, TACTUS_UP_TO(tactus_deformable_bounds, re
 TACTUS_SIZED(tactus_load_bounds, TACTUS_UP_TO(tactus_load_bounds, force_floor));
 TACTUS_SIZED(tactus_limits, TACTUS_UP_TO(tactus_limits, basis_work));
 TACTUS_SIZED(tactus_packet_info, TACTUS_UP_TO(tactus_packet_info, restarts));
-TACTUS_SIZED(tactus_scene_info, TACTUS_UP_TO(tactus_scene_info, load_users));
+TACTUS_SIZED(tactus_scene_info, TACTUS_UP_TO(tactus_scene_info, load_users), TACTUS_UP_TO(tactus_scene_info, interest_reach));
 TACTUS_SIZED(tactus_rigid_info, TACTUS_UP_TO(tactus_rigid_info, initial));
 TACTUS_SIZED(tactus_deformable_info, TACTUS_UP_TO(tactus_deformable_info, reserved));
 TACTUS_SIZED(tactus_receiver_options, TACTUS_UP_TO(tactus_receiver_options, limits));
-TACTUS_SIZED(tactus_scene_options, TACTUS_UP_TO(tactus_scene_options, friction));
+TACTUS_SIZED(tactus_scene_options, TACTUS_UP_TO(tactus_scene_options, friction),
+             TACTUS_UP_TO(tactus_scene_options, interest_reach));
 TACTUS_SIZED(tactus_deformable_options, TACTUS_UP_TO(tactus_deformable_options, blend));
 TACTUS_SIZED(tactus_driven_physics, TACTUS_UP_TO(tactus_driven_physics, damping));
-TACTUS_SIZED(tactus_elastic_physics, TACTUS_UP_TO(tactus_elastic_physics, friction));
+TACTUS_SIZED(tactus_elastic_physics, TACTUS_UP_TO(tactus_elastic_physics, friction),
+             TACTUS_UP_TO(tactus_elastic_physics, sub_steps));
 TACTUS_SIZED(tactus_sender_options, TACTUS_UP_TO(tactus_sender_options, load));
-TACTUS_SIZED(tactus_truth, TACTUS_UP_TO(tactus_truth, load_count));
+TACTUS_SIZED(tactus_truth, TACTUS_UP_TO(tactus_truth, load_count), TACTUS_UP_TO(tactus_truth, moved_count));
 TACTUS_SIZED(tactus_event, TACTUS_UP_TO(tactus_event, widening));
-TACTUS_SIZED(tactus_session_status, TACTUS_UP_TO(tactus_session_status, wrong_states));
-TACTUS_SIZED(tactus_server_options, TACTUS_UP_TO(tactus_server_options, sender));
-TACTUS_SIZED(tactus_client_options, TACTUS_UP_TO(tactus_client_options, limits));
+TACTUS_SIZED(tactus_session_status, TACTUS_UP_TO(tactus_session_status, wrong_states),
+             TACTUS_UP_TO(tactus_session_status, world));
+TACTUS_SIZED(tactus_server_options, TACTUS_UP_TO(tactus_server_options, sender), TACTUS_UP_TO(tactus_server_options, world));
+TACTUS_SIZED(tactus_client_options, TACTUS_UP_TO(tactus_client_options, limits), TACTUS_UP_TO(tactus_client_options, reserved));
 TACTUS_SIZED(tactus_trace_info, TACTUS_UP_TO(tactus_trace_info, source));
 TACTUS_SIZED(tactus_trace_object, TACTUS_UP_TO(tactus_trace_object, name));
 TACTUS_SIZED(tactus_trace_user, TACTUS_UP_TO(tactus_trace_user, name), TACTUS_UP_TO(tactus_trace_user, reserved));

@@ -188,6 +188,8 @@ typedef struct tactus_packet_info {
   uint32_t restarts;  /* decoded: 1: of another or restarted sender, or after a long outage */
 } tactus_packet_info;
 
+enum { TACTUS_OUT_OF_INTEREST = 7 }; /* level of detail of an object that a client is not told of */
+
 /* ---------------------------------------------------------------- scene */
 
 typedef struct tactus_scene tactus_scene; /* immutable */
@@ -202,6 +204,7 @@ typedef struct tactus_scene_info {
   uint32_t eased; /* 1: rigid objects are of profile main */
   uint32_t has_bounds;
   uint32_t has_loads, load_users;
+  double interest_full, interest_reach; /* m: within these a client is told of rigid objects; 0: of all */
 } tactus_scene_info;
 
 typedef struct tactus_rigid_info {
@@ -302,6 +305,10 @@ TACTUS_API tactus_status tactus_receiver_updates(const tactus_receiver* receiver
 /* Poses as shown at a tick, of rigid objects `first` to `first + count - 1`.   time about 50 ns each */
 TACTUS_API tactus_status tactus_receiver_poses(const tactus_receiver* receiver, int64_t tick, uint32_t first, size_t count,
                                                tactus_pose* out, tactus_error* error);
+/* Levels of detail of rigid objects at a tick, in a scene with interest: the bounds of an object are 2^level times as wide;
+   TACTUS_OUT_OF_INTEREST: do not show it. In any other scene 0. */
+TACTUS_API tactus_status tactus_receiver_levels(const tactus_receiver* receiver, int64_t tick, uint32_t first, size_t count,
+                                                uint8_t* out, tactus_error* error);
 /* Displacements from rest as shown at a tick, x y z of vertex 0 first, m.   in  capacity  [floats] at least 3 vertices */
 TACTUS_API tactus_status tactus_receiver_displacements(tactus_receiver* receiver, uint32_t object, int64_t tick, float* out,
                                                        size_t capacity, tactus_error* error);

@@ -29,6 +29,9 @@ typedef struct tactus_scene_options {
   double extrapolation; /* s after which an object without updates stops; 2 */
   double gravity[3];    /* m/s^2, world: updates may choose to fall; 0 */
   double friction;      /* ... or to slide to rest; 0 */
+  /* m: a client is told of rigid objects in full up to interest_full from where it looks, with bounds twice as wide at twice the distance,
+     and of none beyond interest_reach; 0: of all in full */
+  double interest_full, interest_reach;
 } tactus_scene_options;
 
 typedef struct tactus_deformable_options {
@@ -65,6 +68,8 @@ typedef struct tactus_driven_physics {
   double damping;    /* 1/s: rate at which its velocities die away; 0 */
 } tactus_driven_physics;
 
+enum { TACTUS_METHOD_BACKWARD_EULER = 1, TACTUS_METHOD_TR_BDF2 = 2, TACTUS_METHOD_VELOCITY_VERLET = 3 };
+
 /* What a deformable object is made of, that a participant's device deforms. Vertices are those of the surface, then those inside. */
 typedef struct tactus_elastic_physics {
   uint32_t size;
@@ -82,6 +87,8 @@ typedef struct tactus_elastic_physics {
   double gravity[3];        /* m/s^2, world; 0 */
   double coupling;          /* N/m, between device and proxy */
   double friction;          /* of the proxy on the surface; 0 */
+  uint32_t method;          /* TACTUS_METHOD_... of a step, that of the server if it has one; backward Euler */
+  uint32_t sub_steps;       /* of velocity Verlet, 1 to 255, which is stable with them; 1 of the others */
 } tactus_elastic_physics;
 
 TACTUS_API tactus_status tactus_scene_options_init(tactus_scene_options* options, size_t size);
@@ -183,6 +190,10 @@ typedef struct tactus_truth {
   size_t shape_count;
   const double* loads; /* N, world: per rigid object external, hold, then one per user, x y z each; NULL without loads */
   size_t load_count;   /* objects */
+  /* Indices of the objects whose sample is not that of the tick before: what rests then costs nothing. NULL: all are compared. An object that
+     moves and is not named is not sent. */
+  const uint32_t* moved;
+  size_t moved_count;
 } tactus_truth;
 
 TACTUS_API tactus_status tactus_sender_options_init(tactus_sender_options* options, size_t size);
@@ -203,6 +214,9 @@ TACTUS_API tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32
                                                    tactus_error* error);
 /* in   answer  [ticks] until a packet is acknowledged, 0: not known;  loss  share of packets */
 TACTUS_API tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t answer, double loss, tactus_error* error);
+/* In a scene with interest: where the receiver looks from, from the next tick on. Before the first call it is told of all in full.
+   in   places  x y z of each [m, world], two at most: others do not count;  count  0: it looks from nowhere that is known */
+TACTUS_API tactus_status tactus_sender_look_from(tactus_sender* sender, const double* places, size_t count, tactus_error* error);
 TACTUS_API tactus_status tactus_sender_state_hash(const tactus_sender* sender, uint32_t substream, uint64_t* hash,
                                                   tactus_error* error);
 

@@ -20,6 +20,8 @@ enum { TACTUS_DATAGRAM_BYTES = 1200 }; /* no datagram is longer */
 
 enum { TACTUS_ROLE_OBSERVER = 0, TACTUS_ROLE_PARTICIPANT = 1 /* touches: sends the samples of a device */ };
 
+enum { TACTUS_ONLY_LOOKS_ON = 255 }; /* the seat of a participant that has none, as it may not */
+
 enum { TACTUS_SESSION_CLOSED = 0, TACTUS_SESSION_JOINING = 1, TACTUS_SESSION_RECEIVING = 2, TACTUS_SESSION_LIVE = 3 };
 
 /* Why a session ended or did not begin. */
@@ -39,7 +41,8 @@ enum {
   TACTUS_EVENT_LIVE = 2,     /* the declaration is there; client: the receiver has a new scene */
   TACTUS_EVENT_CLOSED = 3,   /* over, for `reason` */
   TACTUS_EVENT_WIDENED = 4,  /* server: the bounds of the client are multiplied by `widening` from now on */
-  TACTUS_EVENT_MOVED = 5     /* server: a client has another address, its `peer` */
+  TACTUS_EVENT_MOVED = 5,    /* server: a client has another address, its `peer` */
+  TACTUS_EVENT_REFUSED = 6   /* server: a join was refused, for `reason`; `client` is nobody */
 };
 
 typedef struct tactus_event {
@@ -69,6 +72,10 @@ typedef struct tactus_session_status {
   uint64_t datagrams_sent, bytes_sent, packets_sent, payload_sent; /* payload: bytes of packets */
   uint64_t datagrams_heard, bytes_heard, packets_heard, payload_heard;
   uint64_t packets_refused, packets_held, lost, ticks_held, wrong_states;
+  uint32_t seat;        /* what a participant plays, from 1; 0: nothing; TACTUS_ONLY_LOOKS_ON */
+  uint32_t wanted_seat; /* server: 0: any */
+  uint64_t token;       /* client: with which another one goes on with this session (tactus_client_options); 0: none yet */
+  uint64_t world;       /* client: what the server simulates, as its program tells; 0: it does not */
 } tactus_session_status;
 
 /* What the device feels: force = stiffness (proxy - position of the device). */
@@ -90,6 +97,7 @@ typedef struct tactus_server_options {
   uint64_t silence;                    /* us after which a client counts as gone; 120 s */
   double widening;                     /* factor by which bounds widen at most where the network is too slow, 1 to 64; 8 */
   const tactus_sender_options* sender; /* for every client; NULL: defaults */
+  uint64_t world;                      /* what is simulated, for programs of clients to compare; 0: not told */
 } tactus_server_options;
 
 TACTUS_API tactus_status tactus_server_options_init(tactus_server_options* options, size_t size);
@@ -107,6 +115,8 @@ TACTUS_API tactus_status tactus_server_submit(tactus_server* server, uint64_t no
 /* Another scene; ticks begin anew. */
 TACTUS_API tactus_status tactus_server_replace_scene(tactus_server* server, const tactus_scene* scene, uint64_t now,
                                                      tactus_error* error);
+/* What a participant plays, from 1; 0: nothing; TACTUS_ONLY_LOOKS_ON. It is told. Who comes back with its token has the seat that it had. */
+TACTUS_API tactus_status tactus_server_seat(tactus_server* server, uint32_t client, uint32_t seat, tactus_error* error);
 /* in   reason  TACTUS_LEAVE_... */
 TACTUS_API tactus_status tactus_server_close_client(tactus_server* server, uint32_t client, uint32_t reason, tactus_error* error);
 TACTUS_API tactus_status tactus_server_close(tactus_server* server, tactus_error* error); /* for all clients */
@@ -137,6 +147,9 @@ typedef struct tactus_client_options {
   int64_t playout;             /* us behind the fastest packet; -1: adaptive */
   uint64_t silence;            /* us after which the server counts as gone; 120 s */
   const tactus_limits* limits; /* NULL: defaults */
+  uint64_t token;              /* of a session that ended without the server's knowledge; 0: none */
+  uint32_t seat;               /* that a participant wants, from 1; 0: any */
+  uint32_t reserved;
 } tactus_client_options;
 
 TACTUS_API tactus_status tactus_client_options_init(tactus_client_options* options, size_t size);
@@ -152,6 +165,9 @@ TACTUS_API tactus_status tactus_client_handle_timeout(tactus_client* client, uin
 /* The device now; at most one sample per tick counts.   in  contact  NULL: it touches nothing */
 TACTUS_API tactus_status tactus_client_submit(tactus_client* client, uint64_t now, const tactus_device_sample* sample,
                                               const tactus_device_contact* contact, tactus_error* error);
+/* In a scene with interest: where the user looks from, x y z [m, world], apart from the device; before _open, too, as an observer is told
+   of all until it has said so. tactus_receiver_levels tells what comes of it. What is not finite, or beyond 8000 km, does not count. */
+TACTUS_API tactus_status tactus_client_look_from(tactus_client* client, uint64_t now, const double* place, tactus_error* error);
 /* in   capacity  at least TACTUS_DATAGRAM_BYTES */
 TACTUS_API tactus_status tactus_client_poll_datagram(tactus_client* client, uint64_t now, uint8_t* bytes, size_t capacity,
                                                      size_t* size, tactus_error* error);

@@ -26,6 +26,7 @@ Result<Truth> TruthBuffer::of(const tactus_truth* truth) {
   TACTUS_TRY(const auto contacts, span_of(t.contacts, t.contact_count));
   TACTUS_TRY(const auto shapes, span_of(t.shapes, t.shape_count));
   TACTUS_CHECK(span_of(t.loads, t.load_count));
+  TACTUS_TRY(const auto moved, span_of(t.moved, t.moved_count));
   const auto fits = [](std::size_t count, std::size_t all) { return count == 0 || count == all; };
   if (!fits(objects.size(), objects_.size()) || !fits(shapes.size(), shapes_.size()) || !fits(t.load_count, loads_.size()))
     return fail(Errc::invalid_argument, "R-API-5");
@@ -37,10 +38,12 @@ Result<Truth> TruthBuffer::of(const tactus_truth* truth) {
   for (const tactus_contact& contact : contacts) TACTUS_CHECK(take(contact));
   for (std::size_t i = 0; i < shapes.size(); ++i) TACTUS_CHECK(take(shapes[i], shapes_[i]));
   if (t.load_count > 0) take_loads(t.loads);
-  return Truth{.objects = std::span(objects_).first(objects.size()),
-               .contacts = contacts_,
-               .deformables = std::span(shapes_).first(shapes.size()),
-               .loads = std::span(loads_).first(t.load_count)};
+  Truth out{.objects = std::span(objects_).first(objects.size()),
+            .contacts = contacts_,
+            .deformables = std::span(shapes_).first(shapes.size()),
+            .loads = std::span(loads_).first(t.load_count)};
+  if (t.moved != nullptr) out.moved = moved;
+  return out;
 }
 
 Result<void> TruthBuffer::take(const tactus_contact& contact) {

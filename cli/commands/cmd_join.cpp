@@ -25,6 +25,7 @@
 #include "cli/live/token_file.h"
 #include "cli/live/wire.h"
 #include "cli/options/options_codec.h"
+#include "cli/options/options_limits.h"
 #include "cli/options/options_link.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
@@ -42,6 +43,7 @@ struct JoinOptions {
   double duration = 0;         // [s], 0: until interrupted or the end of the recording
   double device_error = 1e-4;  // [m]
   double weber_fraction = 0.04;
+  DecodeLimits limits;
   CommonOptions common;
 
   bool participates() const { return !scene.empty(); }
@@ -60,17 +62,28 @@ struct Body {
   device::Time begin = 0;  // of the first one
 };
 
+std::string names_of(const std::vector<sim::SceneUser>& users) {
+  std::string out;
+  for (const sim::SceneUser& user : users) out.append(out.empty() ? "" : ", ").append(user.name);
+  return out;
+}
+
 tl::expected<Body, Failure> make_body(const JoinOptions& options) {
   const auto path = sim::find_scene(options.scene);
   if (!path) return refuse(path.error());
   const auto scene = sim::load_scene(*path);
   if (!scene) return refuse(scene.error());
   const auto user = std::ranges::find(scene->users, options.user, &sim::SceneUser::name);
-  if (scene->users.empty() || (!options.user.empty() && user == scene->users.end()))
-    return refuse_arguments(fmt::format("--user {}: not a user of {}", options.user, options.scene), "Give a user of the scene.");
+  if (scene->users.empty())
+    return refuse_arguments(fmt::format("--scene {}: it has no users, so nobody can touch it", options.scene),
+                            "Leave out --scene to look on.");
+  if (!options.user.empty() && user == scene->users.end())
+    return refuse_arguments(fmt::format("--user {}: not a user of {}", options.user, options.scene),
+                            fmt::format("Its users: {}.", names_of(scene->users)));
   Body body;
-  auto shapes = sim::Server::create(*scene, {.seed = options.device.seed, .codec = sim::ServerCodec{{}, {}, true}});
-  if (!shapes) return refuse(options.scene, shapes.error());
+  auto shapes = sim::Server::create(
+      *scene, {.seed = options.device.seed, .codec = sim::ServerCodec{.sender = {}, .sessions = true, .limits = options.limits}});
+  if (!shapes) return tl::unexpected(allow_more(refuse(options.scene, shapes.error()).value(), shapes.error()));
   body.shapes = std::move(*shapes);
   body.user = options.user.empty() ? 0 : static_cast<std::size_t>(user - scene->users.begin());
   auto client = sim::Client::create_remote(*body.shapes, body.user, *scene);
@@ -109,6 +122,7 @@ class Visit {
   Outcome wait();
   Outcome render(std::uint64_t now);
   Outcome record(std::uint64_t now);
+  std::string meter_text(std::uint64_t now, std::uint64_t missed) const;  ///< one line
 
   /// None: there is no device, or it takes no force.
   std::optional<GuardReport> guard() const {
@@ -122,13 +136,20 @@ class Visit {
   std::optional<LeaveReason> closed;
   bool was_live = false, at_end = false;
   std::uint64_t refused = 0;
+  std::string beyond;        // names of the limits that the scene is beyond
   double largest_force = 0;  // [N]
   std::uint64_t lost = 0;    // ticks that are not in the trace
 
  private:
   Outcome arrive();
+  void note(const Error& error) {
+    ++refused;
+    if (std::string names = limits_of(error); !names.empty()) beyond = std::move(names);
+  }
   void look_at_network(std::uint64_t now);
+  void look_at_arrival(std::uint64_t now);
   void look_at_seat(std::uint64_t now);
+  void look_at_key();
   void tell(const std::string& text) const {
     if (!options_.common.quiet) fmt::print(stderr, "{}\n", text);
   }
@@ -139,9 +160,11 @@ class Visit {
   net::Address server_;
   ClientWire& wire_;
   TokenFile token_;
-  bool has_joined_ = false, is_unanswered_ = false;
-  std::uint64_t renewed_at_ = 0, live_at_ = 0, silent_since_ = 0;  // [us]
-  std::optional<std::uint8_t> seat_;                               // that was told
+  bool is_traced_ = true;  // until the server begins anew: its ticks do, too
+  bool has_joined_ = false, is_unanswered_ = false, is_alone_ = false, is_unheard_ = false, is_doubted_ = false;
+  std::uint64_t begun_at_ = microseconds_now(), receiving_since_ = 0, progress_told_at_ = 0;  // [us]
+  std::uint64_t renewed_at_ = 0, live_at_ = 0, silent_since_ = 0;                             // [us]
+  std::optional<std::uint8_t> seat_;                                                          // that was told
   TraceFrame frame_;
   std::int64_t shown_ = -1, written_ = -1;
 };
@@ -159,7 +182,7 @@ Outcome Visit::arrive() {
   token_.keep(status.token);
   if (options_.output.empty()) return {};
   if (trace) {  // it holds the scene before
-    at_end = true;
+    is_traced_ = false;
     tell(fmt::format("the server has begun anew: {} ends here", shown_path(options_.output)));
     return {};
   }
@@ -190,7 +213,7 @@ Outcome Visit::hear() {
     const auto heard = wire_.receive(microseconds_now());
     if (!heard) gone = heard.error();
     else if (!*heard) break;
-    else if (!session_.handle_datagram(microseconds_now(), **heard)) ++refused;
+    else if (const auto handled = session_.handle_datagram(microseconds_now(), **heard); !handled) note(handled.error());
   }
   const std::uint64_t now = microseconds_now();
   if (const auto there = wire_.handle_timeout(now); !there && !gone) gone = there.error();
@@ -200,9 +223,15 @@ Outcome Visit::hear() {
     if (event->kind == ClientEvent::Kind::closed) closed = event->reason;
     if (event->kind == ClientEvent::Kind::live) TACTUS_CHECK(arrive());
   }
+  look_at_key();
   look_at_network(now);
+  look_at_arrival(now);
   look_at_seat(now);
   if (!gone || closed) return {};
+  if (gone->rule == std::string_view("R-SEA-1") && socket_.is_refused()) {
+    closed = LeaveReason::silence;
+    return {};
+  }
   if (gone->rule != std::string_view("R-SEA-3")) return refuse(options_.server, *gone);
   closed = LeaveReason::bye;  // 70, section 11.4
   return {};
@@ -226,6 +255,46 @@ void Visit::look_at_network(std::uint64_t now) {
   wire_.renew(now);
 }
 
+/// Anyone can say that the key is wrong: the handshake goes on as if nobody had.
+void Visit::look_at_key() {
+  if (is_doubted_ == wire_.is_doubted()) return;
+  is_doubted_ = wire_.is_doubted();
+  if (is_doubted_)
+    tell(fmt::format(
+        "{} answers, but does not accept the key \"{}\" of {}: it is another one, or its user was removed. Get a key file "
+        "from whoever runs the server. Trying on",
+        options_.server, wire_.seal()->user, shown_path(options_.key)));
+}
+
+/// Before the first tick: that nobody is there yet, and how far the scene is.
+void Visit::look_at_arrival(std::uint64_t now) {
+  constexpr std::uint64_t kWait = 1'000'000, kEvery = 3'000'000;  // [us]
+  const SessionStatus status = session_.status();
+  if (was_live || closed) return;
+  if (socket_.is_refused() && now > begun_at_ + kWait && !std::exchange(is_alone_, true))
+    tell(fmt::format("nobody listens at {}: waiting for a server", options_.server));
+  const bool is_unheard = status.state == SessionState::joining && now > begun_at_ + kWait && !socket_.is_refused();
+  if (is_unheard && options_.key.empty() && !std::exchange(is_unheard_, true))
+    tell(fmt::format(
+        "{} takes datagrams but does not answer: if its server has a key, this end needs it too (--key FILE). Trying on",
+        options_.server));
+  if (status.state != SessionState::receiving) return;
+  if (receiving_since_ == 0) receiving_since_ = progress_told_at_ = now;
+  if (now < progress_told_at_ + kEvery) return;
+  progress_told_at_ = now;
+  tell(progress_text(status.received, status.declaration, now - receiving_since_));
+}
+
+std::string Visit::meter_text(std::uint64_t now, std::uint64_t missed) const {
+  const SessionStatus status = session_.status();
+  if (status.state == SessionState::receiving)
+    return progress_text(status.received, status.declaration, now - std::min(now, receiving_since_));
+  if (status.state != SessionState::live) return name_of(status.state);
+  const double trip = status.round_trip ? 1e-3 * static_cast<double>(status.round_trip->smoothed) : 0;
+  return fmt::format("live  round trip {:.1f} ms  shows {:.1f} ms after the fastest packet  loss up {:.1f} %  missed {}", trip,
+                     1e-3 * static_cast<double>(status.playout_delay), 100 * status.loss, missed);
+}
+
 /// What the hand of this end is.
 void Visit::look_at_seat(std::uint64_t now) {
   constexpr std::uint64_t kSoon = 1'000'000;  // [us]: by then the server has told
@@ -234,6 +303,9 @@ void Visit::look_at_seat(std::uint64_t now) {
   if (seat_ == seat || (seat == 0 && now < live_at_ + kSoon)) return;
   seat_ = seat;
   const std::string& user = body->shapes->scene().users[body->user].name;
+  if (seat == kOnlyLooksOn)
+    return tell(fmt::format("looks on: the key \"{}\" may not touch. Whoever runs the server can change its role",
+                            wire_.seal() ? wire_.seal()->user : ""));
   if (seat > 0) return tell("plays " + user);
   tell(fmt::format("{} is played by another: this end looks on until the seat is free. --user NAME plays another one", user));
 }
@@ -293,7 +365,7 @@ Outcome Visit::render(std::uint64_t now) {
 Outcome Visit::record(std::uint64_t now) {
   const SessionStatus status = session_.status();
   const Receiver* receiver = session_.receiver();
-  if (!trace || at_end || shown_ < 0 || !status.clock_offset) return {};
+  if (!trace || !is_traced_ || at_end || shown_ < 0 || !status.clock_offset) return {};
   const std::int64_t at_server = static_cast<std::int64_t>(now) + *status.clock_offset - static_cast<std::int64_t>(status.start);
   const std::int64_t rate = receiver->scene()->tick_rate;
   const std::int64_t tick = at_server / 1'000'000 * rate + at_server % 1'000'000 * rate / 1'000'000;
@@ -326,14 +398,6 @@ Outcome Visit::step(std::uint64_t now) {
   return record(now);
 }
 
-std::string meter_text(const SessionStatus& status, std::uint64_t missed) {
-  if (status.state != SessionState::live)
-    return fmt::format("{} {} of {} kB", name_of(status.state), status.received / 1000, status.declaration / 1000);
-  const double trip = status.round_trip ? 1e-3 * static_cast<double>(status.round_trip->smoothed) : 0;
-  return fmt::format("live  round trip {:.1f} ms  shows {:.1f} ms after the fastest packet  loss up {:.1f} %  missed {}", trip,
-                     1e-3 * static_cast<double>(status.playout_delay), 100 * status.loss, missed);
-}
-
 Json hashes_json(SessionClient& session) {
   Json out = Json::array();
   Receiver* receiver = session.receiver();
@@ -360,6 +424,7 @@ Value value_of(const JoinOptions& options, SessionClient& session, const Visit& 
            {"state_hashes", hashes_json(session)}};
   if (status.round_trip) out["round_trip"] = round_trip_value(*status.round_trip);
   if (status.clock_offset) out["clock_offset_us"] = *status.clock_offset;
+  if (seal) out["key"] = seal->user;
   if (seal) out["seal"] = seal_value(seal->counters);
   if (options.participates()) out["largest_force_N"] = visit.largest_force;
   if (const auto guard = visit.guard()) out["guard"] = value_of(*guard);
@@ -396,7 +461,7 @@ Outcome take_part(const JoinOptions& options, SessionClient& session, Visit& vis
       ++live_ticks;
     }
     visit.say(now);
-    if (meter.is_due(now)) meter.draw(now, meter_text(session.status(), visit.pace(ticker).missed));
+    if (meter.is_due(now)) meter.draw(now, visit.meter_text(now, visit.pace(ticker).missed));
   }
   return {};
 }
@@ -414,12 +479,13 @@ Outcome run(const JoinOptions& typed) {
     TACTUS_TRY(body, make_body(options));
   }
   auto session = SessionClient::create({.role = options.participates() ? Role::participant : Role::observer,
+                                        .limits = options.limits,
                                         .playout = {playout_of(options.playout)},
                                         .device = {.position = options.device_error, .weber_fraction = options.weber_fraction},
                                         .seat = static_cast<std::uint8_t>(body ? body->user + 1 : 0)});
   if (!session) return refuse("session", session.error());
   auto socket = net::UdpSocket::connect(server);
-  if (!socket) return refuse(options.server, socket.error());
+  if (!socket) return refuse_port(options.server, server.port(), errno, "udp");
   TACTUS_TRY(const auto wire, make_wire(options, *socket));
   Visit visit(options, *session, *socket, server, *wire);
   visit.body = std::move(body);
@@ -433,10 +499,16 @@ Outcome run(const JoinOptions& typed) {
   TACTUS_CHECK(worked);
   TACTUS_CHECK(finished);
   if (!visit.was_live) {
-    const std::string why = visit.closed ? name_of(*visit.closed) : "interrupted";
-    const std::string seal = options.key.empty() ? " If it has a key, this end needs it too: --key." : "";
-    return tl::unexpected(
-        Failure{fmt::format("{}: no session: {}", options.server, why), "Is `tactus serve` running there?" + seal});
+    const SessionStatus status = session->status();
+    Failure failure = failure_of({.server = options.server,
+                                  .ended = visit.closed,
+                                  .is_refused = socket->is_refused(),
+                                  .has_key = !options.key.empty(),
+                                  .beyond = visit.beyond,
+                                  .declaration = status.declaration,
+                                  .received = status.received});
+    if (failure.signal = visit.closed ? 0 : StopOnSignal::caught(); failure.signal != 0) failure.cause = Failure::Cause::stopped;
+    return tl::unexpected(std::move(failure));
   }
   print(value_of(options, *session, visit, visit.pace(ticker), seconds, wire->seal()), "join", options.common);
   if (visit.lost > 0) {
@@ -473,10 +545,11 @@ void setup_join(Command& app, Action& action) {
   add_quantity(command, "--device-deadband", options->weber_fraction, Dimension::fraction,
                "In contact, largest error of the normal force that this error causes [4%]")
       ->check(within(Dimension::fraction, "0.1%", "100%"));
+  add_limits(command, options->limits, "Largest scene that this end takes [see below]; may be repeated");
   add_output_options(command, options->common);
-  command.footer(
-      "Example:\n  tactus join 7447 --scene rotate-push-lift -o felt.mcap\n"
-      "From another machine:\n  tactus join 192.0.2.1:7447 --key lab.key --scene rotate-push-lift");
+  command.footer(std::string(limits_help()) +
+                 "\n\nExample:\n  tactus join 7447 --scene rotate-push-lift -o felt.mcap\n"
+                 "From another machine:\n  tactus join 192.0.2.1:7447 --key lab.key --scene rotate-push-lift");
   on_chosen<JoinOptions>(command, action, options, run);
 }
 

@@ -163,7 +163,7 @@ Outcome run(const ForwardOptions& options) {
   TACTUS_TRY(const net::Address listen, loopback_address("--listen", options.listen));
   TACTUS_TRY(const net::Address to, loopback_address("--to", options.to));
   auto own = net::UdpSocket::bind(listen);
-  if (!own) return refuse(options.listen, own.error());
+  if (!own) return refuse_port("--listen " + options.listen, listen.port(), errno, "udp");
   ForwardOptions shown = options;
   shown.listen = own->own().text();
   shown.to = to.text();

@@ -17,6 +17,7 @@
 #endif
 #include "cli/commands/input.h"
 #include "cli/commands/scene_run.h"
+#include "cli/commands/sim_check.h"
 #include "cli/commands/stiffness_map.h"
 #include "cli/figure/time_figure.h"
 #include "cli/live/ticker.h"
@@ -40,7 +41,7 @@ struct SimOptions {
   std::uint64_t seed = 1;
   double duration = -1;   // [s], negative: the scene's
   double mesh_noise = 0;  // [m] RMS per axis
-  bool codec = false;
+  bool codec = false, check = false;
   std::string compensation;  // empty: the scene's
   double told = 1;           // of what devices move, times the true
   TriggerArguments triggers;
@@ -86,6 +87,7 @@ struct Run {
   std::optional<NetworkJudge> judge;  // with a network
   sim::SessionNetwork* network = nullptr;
   std::optional<MotionFigure> figure;
+  std::vector<SimCheck> checks;  // finer runs beside it
 };
 
 /// One tick, by the scene's hands or by the recording.
@@ -196,6 +198,7 @@ Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report
     if (!packet) return refuse_after(packet.error(), run, report);
     if (report.timings.size() > 1) add_deformations(run, report.timings[1].times);
     TACTUS_CHECK(record(run, *packet, options, report));
+    for (SimCheck& check : run.checks) TACTUS_CHECK(check.add(run.simulation.frame()));
     progress.update(report.ticks.count());
   }
   return finish(run, options);
@@ -345,6 +348,75 @@ Outcome keep_capture([[maybe_unused]] const Networked& networked) {
 #endif
 }
 
+/// in   networked  outlives the simulation
+tl::expected<sim::SimulationOptions, Failure> settings_of(const SimOptions& options, const sim::Scene& scene,
+                                                          Networked& networked) {
+  sim::SimulationOptions out{.seed = options.seed,
+                             .grip = options.hands.grip(),
+                             .channel = {},
+                             .mesh_noise = options.mesh_noise,
+                             .estimate_every = kEstimateEvery};
+  if (options.has_channel())
+    out.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica,
+                                      options.meshes.coding(options.triggers), options.told};
+  if (options.has_network()) TACTUS_CHECK(add_network(options, scene, networked, *out.channel));
+  return out;
+}
+
+/// A finer run of the same, which writes nothing.
+struct FinerRun {
+  SimOptions options;
+  sim::Scene scene;
+  Networked networked{};
+  std::optional<sim::Simulation> simulation{};
+  std::optional<TraceReader> recording{};
+  TraceFrame recorded{};
+  std::int64_t left;  // ticks
+
+  Outcome begin(int parts) {
+    options.pcap.clear();
+    TACTUS_TRY(auto settings, settings_of(options, scene, networked));
+    settings.parts = parts;
+    settings.estimate_every = 0;
+    auto made = sim::Simulation::create(scene, settings);
+    if (!made) return refuse(options.scene, made.error());
+    simulation.emplace(std::move(*made));
+    if (options.replay.empty()) return {};
+    TACTUS_TRY(auto reader, open_replay(options.replay, Visibility::hidden));
+    recording.emplace(std::move(reader));
+    return {};
+  }
+
+  const TraceFrame* step() {
+    if (left-- == 0) return nullptr;
+    if (recording) {
+      const auto more = next_frame(*recording, recorded, options.replay);
+      if (!more || !*more) return nullptr;
+    }
+    const auto stepped = recording ? simulation->step(recorded_devices(*recording, recorded)) : simulation->step();
+    if (!stepped) fmt::print(stderr, "tactus: --check: {}: {}\n", options.scene, printable(to_string(stepped.error())));
+    return stepped ? &simulation->frame() : nullptr;
+  }
+};
+
+Outcome start_checks(const SimOptions& options, const sim::Scene& scene, const TraceInfo& info, std::int64_t ticks, Run& run) {
+  if (!options.check) return {};
+  const auto add = [&](const char* against, int parts, std::uint32_t rate) -> Outcome {
+    TACTUS_TRY(auto check, SimCheck::start(info, against, [&]() -> SimCheck::Step {
+                 auto finer = std::make_shared<FinerRun>(FinerRun{.options = options, .scene = scene, .left = ticks});
+                 if (rate > 0)
+                   for (sim::SceneDeformable& object : finer->scene.deformables) object.rate = rate;
+                 if (const auto begun = finer->begin(parts); !begun) return {};
+                 return [finer] { return finer->step(); };
+               }));
+    run.checks.push_back(std::move(check));
+    return {};
+  };
+  TACTUS_CHECK(add("half the step", 2, 0));
+  const bool is_rare = std::ranges::any_of(scene.deformables, [](const sim::SceneDeformable& object) { return object.rate > 1; });
+  return is_rare ? add("a shape in each tick", 1, 1) : Outcome();
+}
+
 Outcome run(const SimOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   if (options.duration >= 0 && options.duration < 0.5 / sim::kTickRate)
@@ -359,16 +431,8 @@ Outcome run(const SimOptions& options) {
       return refuse_arguments(fmt::format("{}: without a network {}", name, why), "Give --link or --uplink, or leave it out.");
   TACTUS_TRY(const auto scene, read_scene(options));
   note_idle_options(*options.common.command, subjects_of(scene), "scene");
-  sim::SimulationOptions settings{.seed = options.seed,
-                                  .grip = options.hands.grip(),
-                                  .channel = {},
-                                  .mesh_noise = options.mesh_noise,
-                                  .estimate_every = kEstimateEvery};
-  if (options.has_channel())
-    settings.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica,
-                                           options.meshes.coding(options.triggers), options.told};
   Networked networked;
-  if (options.has_network()) TACTUS_CHECK(add_network(options, scene, networked, *settings.channel));
+  TACTUS_TRY(const auto settings, settings_of(options, scene, networked));
   auto simulation = sim::Simulation::create(scene, settings);
   if (!simulation) return refuse(options.scene, simulation.error());
   std::optional<TraceReader> recording;
@@ -394,8 +458,17 @@ Outcome run(const SimOptions& options) {
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
   if (options.has_channel() && !options.has_network() && simulation->stream_scene()->loads) report.loads.emplace();
-  Run session{
-      std::move(*simulation), std::move(output), std::move(*trace), std::move(stream), std::move(recording), {}, {}, {}, {}, {}};
+  Run session{std::move(*simulation),
+              std::move(output),
+              std::move(*trace),
+              std::move(stream),
+              std::move(recording),
+              {},
+              {},
+              {},
+              {},
+              {},
+              {}};
   if (!options.plot.empty()) session.figure.emplace(info);
   if (networked.network != nullptr) {
     session.judge.emplace(info, options.triggers, options.meshes);
@@ -403,19 +476,23 @@ Outcome run(const SimOptions& options) {
   }
   const auto ticks = options.duration < 0 ? session.simulation.ticks()
                                           : static_cast<std::int64_t>(std::llround(options.duration * sim::kTickRate));
+  TACTUS_CHECK(start_checks(options, scene, info, ticks, session));
   if (auto done = simulate(session, ticks, options, report); !done) {
     if (report.ticks.count() == 0) session.output.discard();
     return done;
   }
   report_touches(scene, session.simulation, report);
+  report_rigid(scene, session.simulation.rigid_errors(), report);
   if (session.judge) report.networks = session.judge->finish(*session.network);
   else if (options.has_channel()) report.stream = stream_size(session);
   TACTUS_CHECK(keep_capture(networked));
   report_errors(session.simulation, report);
+  for (SimCheck& check : session.checks) report.checks.push_back(check.finish());
   report.timings.push_back(std::move(map));
   print(report, options.common, beside(options.output));
   if (session.figure) TACTUS_CHECK(draw(options.plot, Figure{options.scene, session.figure->panels()}, options.common));
   if (const int signal = StopOnSignal::caught(); signal != 0) return stopped(signal, report, options);
+  TACTUS_CHECK(check_contacts(report, options.scene));
   return report.bounds_from.empty() ? Outcome() : verdict(report, options.output);
 }
 
@@ -461,6 +538,9 @@ void setup_sim(Command& app, Action& action) {
       .add_option("--stiffness-map", options->stiffness_map,
                   "Also write the local stiffness of deformable objects (CSV, and a figure beside it)")
       ->type_name("FILE");
+  command.add_flag("--check", options->check,
+                   "Simulate the same again beside it with half the step, and with a shape in each tick, and tell the difference "
+                   "[costs two to four times the time]");
   command.add_flag("--codec", options->codec,
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");

@@ -3,7 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
 #include <random>
+#include <system_error>
+#include <utility>
 
 #include "cli/live/wire.h"
 #include "cli/report/json.h"
@@ -13,11 +18,49 @@
 namespace tactus::cli {
 namespace {
 
+bool is_number(const std::string& text) {
+  return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
 tl::expected<net::Address, Failure> any_address(const std::string& what, const std::string& typed) {
-  const std::string full = typed.find(':') == std::string::npos ? "127.0.0.1:" + typed : typed;
+  const auto refused = [&](const char* why, std::string remedy) {
+    return refuse_arguments(fmt::format("{} {}: {}", what, typed, why), std::move(remedy));
+  };
+  const std::string full = is_number(typed) ? "127.0.0.1:" + typed : typed;
   const auto address = net::Address::parse(full);
-  if (!address) return refuse_arguments(what + " " + typed + ": not a port and not HOST:PORT", "Give a port from 0 to 65535.");
-  return *address;
+  if (address) return *address;
+  const std::size_t colon = typed.find(':');
+  if (net::Address::has_form(full))
+    return refused("no host of this name is known", "Check its spelling (`getent hosts NAME`), or give its address in numbers.");
+  if (colon != typed.rfind(':') && typed[0] != '[')
+    return refused("an IPv6 address stands in brackets", "Write it like [2001:db8::1]:7447.");
+  if (colon == std::string::npos && !is_number(typed))
+    return refused("there is no port", "Write it like 192.0.2.1:7447, [2001:db8::1]:7447 or server.example:7447.");
+  return refused("not a port and not HOST:PORT", "Give a port from 0 to 65535.");
+}
+
+/// Why the system does not open a port, and what helps.
+std::pair<std::string, std::string> port_trouble(std::uint16_t port, int cause, const char* protocol) {
+  switch (cause) {
+    case EADDRINUSE:
+      return {
+          "another program has this port",
+          fmt::format("End it (`ss -{}lpn sport = :{}` names it), or give another port; 0: any free one.", protocol[0], port)};
+    case EACCES:
+    case EPERM:
+      if (port < 1024) return {"ports below 1024 are for administrators", "Give a port from 1024 to 65535."};
+      return {"the system does not permit it", "Give another port, or check what confines this program (container, SELinux)."};
+    case EADDRNOTAVAIL:
+      return {"this machine has no such address",
+              "Give one that `ip address` names, or 0.0.0.0 (all of IPv4) or [::] (all of IPv4 and IPv6)."};
+    case EAFNOSUPPORT:
+      return {"this machine has no IPv6", "Give an address of IPv4, such as 0.0.0.0 for all."};
+    case ENETUNREACH:
+    case EHOSTUNREACH:
+      return {"no way leads there", "Check the network of this machine: `ip route`."};
+    default:
+      return {std::generic_category().message(cause), "Check the address, and the network of this machine."};
+  }
 }
 
 }  // namespace
@@ -36,6 +79,63 @@ tl::expected<net::Address, Failure> session_address(const std::string& what, con
     return refuse_arguments(what + " " + typed + ": not on the loopback, and there is no --key",
                             "Beyond this machine sessions are sealed. " + how_to_seal());
   return address;
+}
+
+tl::unexpected<Failure> refuse_port(const std::string& what, std::uint16_t port, int cause, const char* protocol) {
+  const auto [why, remedy] = port_trouble(port, cause, protocol);
+  auto refused = refuse(fmt::format("{}: {}", what, why), remedy);
+  refused.value().error_class = errc_name(Errc::io);
+  return refused;
+}
+
+namespace {
+
+std::string size_text(std::uint64_t bytes) {
+  return bytes < 1'000'000 ? fmt::format("{:.1f} kB", 1e-3 * static_cast<double>(bytes))
+                           : fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(bytes));
+}
+
+std::string remedy_of_silence(const NoSession& join) {
+  if (join.is_refused) return "Start `tactus serve` there, or give the port that it tells when it starts.";
+  if (join.received > 0) return "Check the network between the two, and whether the server still runs.";
+  return std::string("Is `tactus serve` running there, and does the network let UDP to this port pass?") +
+         (join.has_key ? "" : " If it has a key, this end needs it too: --key.");
+}
+
+std::string remedy_of_end(const NoSession& join) {
+  switch (join.ended.value_or(LeaveReason::bye)) {
+    case LeaveReason::bye:
+      return "";
+    case LeaveReason::full:
+      return "Join again when somebody has left; `tactus serve --clients N` has room for more.";
+    case LeaveReason::version:
+    case LeaveReason::protocol:
+    case LeaveReason::scene:
+      return "Use the same version at both ends: `tactus --version`.";
+    case LeaveReason::limits:
+      return fmt::format("Allow more with --limit ({}), or ask the operator of the server for a smaller scene.",
+                         join.beyond.empty() ? "memory or declaration" : join.beyond);
+    case LeaveReason::silence:
+      return remedy_of_silence(join);
+  }
+  return "";
+}
+
+}  // namespace
+
+Failure failure_of(const NoSession& join) {
+  std::string why = join.ended ? name_of(*join.ended) : "interrupted";
+  if (join.ended == LeaveReason::silence && join.is_refused) why = "nobody listens there";
+  if (join.received > 0)
+    why += fmt::format(", with {} of {} of the scene here", size_text(join.received), size_text(join.declaration));
+  return {fmt::format("{}: no session: {}", join.server, why), remedy_of_end(join)};
+}
+
+std::string progress_text(std::uint64_t received, std::uint64_t declaration, std::uint64_t time) {
+  const double all = static_cast<double>(declaration), here = static_cast<double>(received);
+  std::string text = fmt::format("receiving the scene: {:.0f} % of {}", all > 0 ? 100 * here / all : 0, size_text(declaration));
+  if (received > 0) text += fmt::format(", {:.0f} s left", std::ceil((all - here) / here * 1e-6 * static_cast<double>(time)));
+  return text;
 }
 
 std::uint64_t system_entropy() {

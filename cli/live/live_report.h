@@ -20,6 +20,25 @@ tl::expected<net::Address, Failure> loopback_address(const std::string& what, co
 /// The same; with a key any address.   in  key  what was typed for --key, or nothing
 tl::expected<net::Address, Failure> session_address(const std::string& what, const std::string& typed, const std::string& key);
 
+/// The system does not open a port: who has it, or who may not, and what helps.
+/// in   what  "--listen 7447";  cause  errno
+tl::unexpected<Failure> refuse_port(const std::string& what, std::uint16_t port, int cause, const char* protocol);
+
+/// How a client came to no session.
+struct NoSession {
+  std::string server{};                ///< HOST:PORT
+  std::optional<LeaveReason> ended{};  ///< nothing: the user ended it
+  bool is_refused = false;             ///< the system there says that nobody listens
+  bool has_key = false;
+  std::string beyond{};  ///< names of the limits of this end that the scene is beyond, where they are known
+  std::uint64_t declaration = 0, received = 0;  ///< [bytes] of the scene
+};
+/// Why there is none, and what would help.
+Failure failure_of(const NoSession& join);
+
+/// "receiving the scene: 25 % of 5.1 MB, 6 s left".   in  time  [us] since its first piece was asked for
+std::string progress_text(std::uint64_t received, std::uint64_t declaration, std::uint64_t time);
+
 /// 64 bits from the system.
 std::uint64_t system_entropy();
 

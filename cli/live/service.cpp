@@ -8,6 +8,7 @@
 
 #include "cli/live/live_report.h"
 #include "cli/live/ticker.h"
+#include "cli/report/table.h"
 
 namespace tactus::cli {
 namespace {
@@ -19,7 +20,13 @@ constexpr std::uint64_t kLasting = 3'000'000;  // [us] of wider bounds, before t
 }  // namespace
 
 Service::Service(sim::Server& world, SessionServer& sessions, ServerWire& wire, Observation* observation, EventLog log)
-    : world_(world), sessions_(sessions), wire_(wire), observation_(observation), log_(log), told_(sessions.clients()) {
+    : world_(world),
+      sessions_(sessions),
+      wire_(wire),
+      observation_(observation),
+      log_(log),
+      told_(sessions.clients()),
+      traffic_(sessions.clients()) {
   for (const sim::SceneUser& user : world.scene().users)
     seats_.push_back({.client = {}, .device = {.position = user.start}, .is_lifted = false});
   devices_.resize(seats_.size());
@@ -46,6 +53,43 @@ void Service::end(std::uint64_t peer) {
     if (sessions_.status(i).peer == peer) sessions_.close(i, LeaveReason::bye);
 }
 
+/// Users that are removed leave; what others may do is what their key list says now.
+void Service::look_at_keys(std::uint64_t now) {
+  const auto news = wire_.look_at_keys(now, std::exchange(must_look_, false));
+  if (!news) return;
+  log_.tell(now, news->is_refused ? "keys_refused" : "keys", news->text, {{"text", news->text}});
+  for (std::uint16_t i = 0; i < sessions_.clients(); ++i) {
+    const ClientStatus status = sessions_.status(i);
+    told_[i].is_removed = std::ranges::find(news->removed, status.peer) != news->removed.end();
+    if (told_[i].is_removed) sessions_.close(i, LeaveReason::bye);
+    else find_user(status);
+  }
+  say(now);
+}
+
+/// What a client may do is what the user of its address may, whoever it was before.
+void Service::find_user(const ClientStatus& status) {
+  if (status.state == SessionState::closed) return;
+  if (auto user = wire_.user_of(status.peer)) told_[status.client].user = std::move(user);
+}
+
+void Service::look_at_floods(std::uint64_t now) {
+  constexpr std::uint64_t kEvery = 10'000'000;
+  if (now < looked_at_ + kEvery) return;
+  looked_at_ = now;
+  std::uint64_t strangers = wire_.limited() - std::exchange(limited_, wire_.limited());
+  for (std::uint16_t i = 0; i < sessions_.clients(); ++i) {
+    const std::uint64_t all = wire_.limited_of(sessions_.status(i).peer), before = std::exchange(told_[i].dropped, all);
+    if (all <= before) continue;
+    strangers -= std::min(strangers, all - before);
+    tell(i, now, "flood", fmt::format("sends too much: dropped {} of its datagrams in 10 s", all - before),
+         {{"dropped", all - before}});
+  }
+  if (strangers > 0)
+    log_.tell(now, "flood", fmt::format("strangers send too much: dropped {} of their datagrams in 10 s", strangers),
+              {{"dropped", strangers}});
+}
+
 void Service::close(std::uint64_t now) {
   sessions_.close();
   say(now);
@@ -68,10 +112,21 @@ std::size_t Service::live() const {
 Outcome Service::step(std::uint64_t now, std::int64_t tick, std::optional<TraceWriter>& trace, const std::string& output) {
   constexpr std::int64_t kAtOnce = 10;
   wire_.tick(now, [this](std::uint64_t peer) { return has_session(peer); });
+  look_at_keys(now);
+  look_at_floods(now);
   look_after_seats(now);
+  look_after_work(now);
   if (tick - next_ > kAtOnce) left_out_ += tick - std::exchange(next_, tick);
   for (; next_ <= tick; ++next_) TACTUS_CHECK(make_tick(now, trace, output));
   return {};
+}
+
+void Service::look_after_work(std::uint64_t now) {
+  while (auto work = sessions_.poll_work()) work_.give(*std::move(work));
+  while (auto done = work_.poll()) {
+    auto rest = sessions_.take(now, *std::move(done));  // without memory the client asks again
+    if (rest && *rest) work_.free(**std::move(rest));
+  }
 }
 
 Outcome Service::make_tick(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output) {
@@ -84,7 +139,8 @@ Outcome Service::make_tick(std::uint64_t now, std::optional<TraceWriter>& trace,
   TraceFrame& frame = world_.frame();
   frame.tick += left_out_;
   world_.touch(devices_);
-  const Truth truth = world_.truth();
+  Truth truth = world_.truth();
+  if (frame.changed) truth.moved = *frame.changed;
   if (const auto sent = sessions_.submit(now, frame.tick, truth); !sent)
     return refuse("session", place_of_tick(frame.tick), sent.error());
   say(now);
@@ -117,6 +173,7 @@ void Service::look_after_seats(std::uint64_t now) {
 /// came.
 void Service::look_after(Seat& seat, std::size_t user, std::uint64_t now) {
   const std::uint64_t silence = silence_of(*seat.client, now);
+  if (!told_[*seat.client].may_touch()) return leave(seat, user, now, "may only look on now");
   if (sessions_.status(*seat.client).state == SessionState::closed) return leave(seat, user, now, "has left");
   if (silence > kEmpty) return leave(seat, user, now, "was silent for 10 s");
   world_.lift(user, static_cast<double>(kLifted - std::clamp(silence, kFresh, kLifted)) / (kLifted - kFresh));
@@ -152,8 +209,14 @@ void Service::give_seat(const ClientStatus& status, std::uint64_t now) {
     if (status.seat != number_of(*own)) sessions_.seat(client, number_of(*own));
     return;
   }
+  if (!told_[client].may_touch()) {
+    if (status.seat != kOnlyLooksOn) sessions_.seat(client, kOnlyLooksOn);
+    if (!std::exchange(told_[client].looks_on, true)) tell(client, now, "looks_on", "looks on: its user may not touch");
+    return;
+  }
   Seat* const seat = seat_for(status, now);
   if (seat == nullptr) {
+    if (status.seat == kOnlyLooksOn) sessions_.seat(client, 0);
     if (std::exchange(told_[client].looks_on, true)) return;
     tell(client, now, "looks_on",
          status.wanted_seat == 0 ? "looks on: no seat is free"
@@ -171,14 +234,24 @@ void Service::give_seat(const ClientStatus& status, std::uint64_t now) {
 
 void Service::tell(std::uint16_t client, std::uint64_t now, const char* event, const std::string& text, Json fields) {
   fields["client"] = client;
-  log_.tell(now, event, fmt::format("client {} {}", client, text), std::move(fields));
+  if (told_[client].user) fields["key"] = told_[client].user->name;
+  log_.tell(now, event, fmt::format("{} {}", name_of(client), text), std::move(fields));
+}
+
+/// "client 2", "client 2 (anna)".
+std::string Service::name_of(std::uint16_t client) const {
+  const std::string user = user_of(client);
+  return user.empty() ? fmt::format("client {}", client) : fmt::format("client {} ({})", client, user);
 }
 
 void Service::tell(const ServerEvent& event, std::uint64_t now) {
+  if (event.kind == ServerEvent::Kind::refused) return tell_refusal(event.reason, now);
   const ClientStatus status = sessions_.status(event.client);
   switch (event.kind) {
     case ServerEvent::Kind::joined: {
+      ++joined_;
       told_[event.client] = {};
+      find_user(status);
       const std::string address = wire_.address_of(status.peer),
                         role = status.role == Role::observer ? "observer" : "participant";
       return tell(event.client, now, "joined", fmt::format("joins from {} as {}", address, role),
@@ -187,16 +260,56 @@ void Service::tell(const ServerEvent& event, std::uint64_t now) {
     case ServerEvent::Kind::live:
       return tell(event.client, now, "live", "has the scene");
     case ServerEvent::Kind::moved: {
+      ++moved_;
+      find_user(status);
       const std::string address = wire_.address_of(status.peer);
       return tell(event.client, now, "moved", "is at " + address + " now", {{"address", address}});
     }
-    case ServerEvent::Kind::left:
-      return tell(event.client, now, "left", fmt::format("is gone: {}", cli::name_of(event.reason)),
-                  {{"reason", cli::name_of(event.reason)}});
+    case ServerEvent::Kind::left: {
+      ++left_;
+      traffic_.add(event.client, status.traffic);
+      const char* const reason =
+          told_[event.client].is_removed ? "its user is removed, or has another key" : cli::name_of(event.reason);
+      return tell(event.client, now, "left", fmt::format("is gone: {}", reason), {{"reason", reason}});
+    }
     case ServerEvent::Kind::widened:
       told_[event.client].widened_at = now;
       return;
+    case ServerEvent::Kind::refused:
+      return;
   }
+}
+
+/// Once a second: a client that is refused may come again at once.
+void Service::tell_refusal(LeaveReason reason, std::uint64_t now) {
+  constexpr std::uint64_t kEvery = 1'000'000;
+  const std::uint64_t times = ++refusals_[static_cast<std::size_t>(reason)];
+  if (refusal_told_at_ > 0 && now < refusal_told_at_ + kEvery) return;
+  refusal_told_at_ = now;
+  const std::string why = reason == LeaveReason::full ? fmt::format("there is room for {} (--clients)", sessions_.clients())
+                          : reason == LeaveReason::version
+                              ? "it speaks another version"
+                              : "the scene is beyond its limits (its --limit: memory or declaration)";
+  log_.tell(now, "refused", fmt::format("a client is refused: {}; {} so far", why, counted(times, "join")),
+            {{"reason", cli::name_of(reason)}, {"joins", times}});
+}
+
+void Service::describe(ServerFigures& out) {
+  for (std::uint16_t i = 0; i < sessions_.clients(); ++i) {
+    out.clients[i] = sessions_.status(i);
+    traffic_.add(i, out.clients[i].traffic);
+  }
+  out.seats = seats_.size();
+  out.seats_taken =
+      static_cast<std::size_t>(std::ranges::count_if(seats_, [](const Seat& seat) { return seat.client.has_value(); }));
+  out.joined = joined_;
+  out.left = left_;
+  out.moved = moved_;
+  out.refused = refusals_;
+  out.datagrams_refused = refused_;
+  out.datagrams_limited = wire_.limited();
+  out.traffic = traffic_.sum();
+  if (const auto seal = wire_.seal()) out.seal = seal->counters;
 }
 
 void Service::tell_widening(const ClientStatus& status, std::uint64_t now) {

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <unistd.h>
 #include <algorithm>
 #include <atomic>
 
+#include "cli/output.h"
 #include "cli/progress.h"
 
 namespace tactus::cli {
@@ -14,13 +16,13 @@ namespace tactus::cli {
 
 namespace {
 
-constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
+constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGUSR1};
 
 // Read and written by a signal handler.
 std::atomic<int> caught_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
-std::array<struct sigaction, 2> before;  // what was done about kSignals
-std::array<bool, 2> is_ours{};
+std::array<struct sigaction, kSignals.size()> before;  // what was done about kSignals
+std::array<bool, kSignals.size()> is_ours{};
 
 void restore() {
   for (std::size_t i = 0; i < kSignals.size(); ++i)
@@ -35,6 +37,7 @@ extern "C" void note(int signal) {
 }  // namespace
 
 StopOnSignal::StopOnSignal() {
+  remove_unfinished_on_signals();  // before: a file that is begun while this program runs must not take over
   struct sigaction action {};
   action.sa_handler = note;
   action.sa_flags = SA_RESTART;
@@ -48,6 +51,38 @@ StopOnSignal::StopOnSignal() {
 StopOnSignal::~StopOnSignal() { restore(); }
 
 int StopOnSignal::caught() noexcept { return caught_signal; }
+
+// ==== hang-up ====
+
+namespace {
+
+std::atomic<bool> caught_hang_up = false;  // written by a signal handler
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+extern "C" void note_hang_up(int /*signal*/) { caught_hang_up = true; }
+
+}  // namespace
+
+ReloadOnHangUp::ReloadOnHangUp() : had_terminal_(isatty(STDERR_FILENO) != 0) {
+  struct sigaction action {};
+  action.sa_handler = note_hang_up;
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGHUP, nullptr, &before_);
+  is_ours_ = before_.sa_handler != SIG_IGN;  // as nohup wants it
+  if (is_ours_) sigaction(SIGHUP, &action, nullptr);
+}
+
+ReloadOnHangUp::~ReloadOnHangUp() {
+  if (is_ours_) sigaction(SIGHUP, &before_, nullptr);
+}
+
+bool ReloadOnHangUp::caught() noexcept {
+  if (!caught_hang_up.exchange(false)) return false;
+  if (!had_terminal_ || isatty(STDERR_FILENO) != 0) return true;
+  sigaction(SIGHUP, &before_, nullptr);
+  std::raise(SIGHUP);
+  return false;
+}
 
 // ==== meter ====
 

@@ -15,8 +15,8 @@ namespace tactus::cli {
 
 // ==== stop ====
 
-/// While it lives, an interrupt or a request to end is noted instead of obeyed, so that a command can close its files. The second one
-/// is obeyed.
+/// While it lives, an interrupt or a request to end (SIGTERM, or SIGUSR1: another program follows) is noted instead of obeyed, so that a
+/// command can close its files. The second one is obeyed.
 class StopOnSignal {
  public:
   StopOnSignal();
@@ -25,6 +25,24 @@ class StopOnSignal {
   StopOnSignal& operator=(const StopOnSignal&) = delete;
 
   static int caught() noexcept;  ///< the signal, 0: none
+};
+
+// ==== hang-up ====
+
+/// While it exists, SIGHUP asks to read files again. A terminal that is closed sends it, too: then it means the end, as ever.
+class ReloadOnHangUp {
+ public:
+  ReloadOnHangUp();
+  ~ReloadOnHangUp();
+  ReloadOnHangUp(const ReloadOnHangUp&) = delete;
+  ReloadOnHangUp& operator=(const ReloadOnHangUp&) = delete;
+
+  /// Since it was asked last. If the terminal is gone it does not return: the signal does what it did before.
+  bool caught() noexcept;
+
+ private:
+  bool had_terminal_, is_ours_;
+  struct sigaction before_ {};
 };
 
 // ==== meter ====

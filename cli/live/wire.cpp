@@ -4,9 +4,24 @@
 #include <algorithm>
 #include <array>
 
+#include "cli/live/live_report.h"
+
 namespace tactus::cli {
 
 // ==== peers ====
+
+bool Peers::permits(std::uint64_t now, const net::Address& from, std::size_t bytes) {
+  const auto known = std::ranges::find(known_, from, &Known::at);
+  const bool permitted =
+      known != known_.end() ? known->limit.take(now, bytes, net::kClientRate) : strangers_.take(now, from, bytes);
+  limited_ += permitted ? 0u : 1u;
+  return permitted;
+}
+
+std::uint64_t Peers::limited_of(std::uint64_t peer) const {
+  const auto known = std::ranges::find(known_, peer, [](const Known& one) { return one.at.key(); });
+  return known == known_.end() ? 0 : known->limit.dropped();
+}
 
 std::uint64_t Peers::name(const net::Address& from) {
   newest_ = from;
@@ -14,14 +29,14 @@ std::uint64_t Peers::name(const net::Address& from) {
 }
 
 void Peers::settle(const HasSession& has_session) {
-  if (!has_session(newest_.key()) || std::ranges::find(known_, newest_) != known_.end()) return;
-  if (known_.size() == most_) std::erase_if(known_, [&](const net::Address& address) { return !has_session(address.key()); });
-  if (known_.size() < most_) known_.push_back(newest_);
+  if (!has_session(newest_.key()) || std::ranges::find(known_, newest_, &Known::at) != known_.end()) return;
+  if (known_.size() == most_) std::erase_if(known_, [&](const Known& known) { return !has_session(known.at.key()); });
+  if (known_.size() < most_) known_.push_back({newest_});
 }
 
 const net::Address* Peers::find(std::uint64_t peer) const {
-  const auto found = std::ranges::find(known_, peer, &net::Address::key);
-  if (found != known_.end()) return &*found;
+  const auto found = std::ranges::find(known_, peer, [](const Known& known) { return known.at.key(); });
+  if (found != known_.end()) return &found->at;
   return newest_.key() == peer ? &newest_ : nullptr;
 }
 
@@ -29,14 +44,19 @@ const net::Address* Peers::find(std::uint64_t peer) const {
 
 namespace {
 
+constexpr int kMostDropped = 1000;  // datagrams at a time: a tick must not wait for a flood to end
+
 class PlainServerWire final : public ServerWire {
  public:
-  PlainServerWire(net::UdpSocket& socket, std::uint32_t clients) : socket_(socket), peers_(clients) {}
+  PlainServerWire(net::UdpSocket& socket, std::uint32_t clients) : socket_(socket), peers_(clients, system_entropy()) {}
 
-  std::optional<Heard> receive(std::uint64_t /*now*/) override {
-    const auto received = socket_.receive(buffer_);
-    if (!received) return std::nullopt;
-    return Heard{peers_.name(received->from), received->bytes};
+  std::optional<Heard> receive(std::uint64_t now) override {
+    for (int i = 0; i < kMostDropped; ++i) {
+      const auto received = socket_.receive(buffer_);
+      if (!received) return std::nullopt;
+      if (peers_.permits(now, received->from, received->bytes.size())) return Heard{peers_.name(received->from), received->bytes};
+    }
+    return std::nullopt;
   }
   void settle(const HasSession& has_session) override { peers_.settle(has_session); }
   void send(std::uint64_t peer, std::span<const std::uint8_t> bytes) override {
@@ -46,9 +66,13 @@ class PlainServerWire final : public ServerWire {
     const net::Address* const at = peers_.find(peer);
     return (at != nullptr ? *at : net::Address()).text();
   }
+  std::optional<WireUser> user_of(std::uint64_t /*peer*/) const override { return std::nullopt; }
+  std::optional<KeyNews> look_at_keys(std::uint64_t /*now*/, bool /*at_once*/) override { return std::nullopt; }
   void tick(std::uint64_t /*now*/, const HasSession& /*has_session*/) override {}
   std::optional<std::uint64_t> poll_closed() override { return std::nullopt; }
   void close() override {}
+  std::uint64_t limited() const override { return peers_.limited(); }
+  std::uint64_t limited_of(std::uint64_t peer) const override { return peers_.limited_of(peer); }
   std::optional<SealUse> seal() const override { return std::nullopt; }
 
  private:
@@ -70,6 +94,7 @@ class PlainClientWire final : public ClientWire {
   void send(std::span<const std::uint8_t> bytes) override { socket_.send(bytes); }
   void renew(std::uint64_t /*now*/) override {}
   bool is_open() const override { return true; }
+  bool is_doubted() const override { return false; }
   std::optional<std::uint64_t> next_timeout() const override { return std::nullopt; }
   void close() override {}
   std::optional<SealUse> seal() const override { return std::nullopt; }

@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "cli/live/live_report.h"
 #include "cli/observe/observed_stream.h"
 #include "cli/observe/web_door.h"
 #include "cli/viewer/page.h"
@@ -38,7 +39,9 @@ class LiveObservation final : public Observation {
         queue_(*setup.like, scene_.declared->loads ? scene_.declared->objects.size() : 0, setup.like->users.size()) {
     const std::uint16_t port = door_.open(setup.port);
     address_ = fmt::format("http://127.0.0.1:{}/", port);
-    door_.serve(live_page(port));
+    door_.serve({.targets = {kPageTarget, kLiveTarget},
+                 .nothing = "There is / and nothing else.\n",
+                 .page = [page = WebPage{live_page(port), "text/html; charset=utf-8"}](std::string_view) { return page; }});
     thread_ = std::thread([this] { work(); });
   }
   ~LiveObservation() override { finish(); }
@@ -145,8 +148,7 @@ tl::expected<std::unique_ptr<Observation>, Failure> Observation::create(const Se
   ObservedScene scene{setup.info, setup.declared, setup.sender, setup.name, std::move(shapes)};
   return std::make_unique<LiveObservation>(setup, std::move(scene));
 } catch (const boost::system::system_error& error) {
-  return refuse(fmt::format("--observe {}: {}", setup.port, error.code().message()),
-                "Take another port, or 0 for any that is free.");
+  return refuse_port(fmt::format("--observe {}", setup.port), setup.port, error.code().value(), "tcp");
 }
 
 }  // namespace tactus::cli

@@ -17,13 +17,13 @@ namespace tactus::cli {
 
 // ==== web request ====
 
-WebAnswer judge(const WebRequest& request, std::uint16_t port) {
+WebAnswer judge(const WebRequest& request, std::uint16_t port, const WebSite& site) {
   const std::string suffix = ':' + std::to_string(port);
   const bool is_here = request.host == "127.0.0.1" + suffix || request.host == "localhost" + suffix;
   if (request.hosts != 1 || !is_here) return {421, "This server answers to http://127.0.0.1 and its port alone.\n"};
-  if (request.target != kPageTarget && request.target != kLiveTarget) return {404, "There is / and nothing else.\n"};
+  if (std::ranges::find(site.targets, request.target) == site.targets.end()) return {404, site.nothing};
   if (request.method != "GET") return {405, "Only GET is answered.\n"};
-  if (request.target == kPageTarget) return {kPageAnswer};
+  if (request.target != kLiveTarget) return {kPageAnswer};
   if (!request.upgrades) return {426, "This is a WebSocket; open / in a browser.\n"};
   if (request.origins != 1 || request.origin != "http://" + std::string(request.host))
     return {403, "Only the page of this server may observe it.\n"};
@@ -66,7 +66,7 @@ struct WebDoor::Impl {
   asio::ip::tcp::acceptor acceptor;
   asio::steady_timer pause;  // after a failure to accept
   std::uint16_t port = 0;
-  std::string page;
+  WebSite site;
   std::shared_ptr<std::size_t> visitors = std::make_shared<std::size_t>();  // connections, those of observers too
   std::vector<std::shared_ptr<Observer>> observers;
   bool is_closed = false;
@@ -199,8 +199,8 @@ class Knock : public std::enable_shared_from_this<Knock> {
                                     .hosts = request.count(http::field::host),
                                     .origins = request.count(http::field::origin),
                                     .upgrades = websocket::is_upgrade(request)},
-                                   door_.port);
-    if (answer.status == kPageAnswer) return say(answer.status, door_.page, "text/html; charset=utf-8");
+                                   door_.port, door_.site);
+    if (answer.status == kPageAnswer) return say(door_.site.page(view_of(request.target())));
     if (answer.status != kLiveAnswer) return refuse(answer);
     if (door_.is_closed || door_.observers.size() >= kMostObservers) return refuse({503, "So many observe already.\n"});
     const auto observer = std::make_shared<Observer>(door_, std::move(visit_), std::move(stream_));
@@ -212,14 +212,14 @@ class Knock : public std::enable_shared_from_this<Knock> {
 
   void refuse(const WebAnswer& answer) {
     ++door_.counts.requests_refused;
-    say(answer.status, std::string(answer.text), "text/plain; charset=utf-8");
+    say({.text = std::string(answer.text), .status = answer.status});
   }
 
-  void say(unsigned status, std::string text, const char* type) {
-    response_.result(status);
+  void say(WebPage page) {
+    response_.result(page.status);
     response_.version(11);
     response_.keep_alive(false);
-    response_.set(http::field::content_type, type);
+    response_.set(http::field::content_type, page.type);
     response_.set(http::field::cache_control, "no-store");
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("X-Frame-Options", "DENY");
@@ -227,7 +227,7 @@ class Knock : public std::enable_shared_from_this<Knock> {
     response_.set("Cross-Origin-Resource-Policy", "same-origin");
     response_.set("Cross-Origin-Opener-Policy", "same-origin");
     response_.set("Referrer-Policy", "no-referrer");
-    response_.body() = std::move(text);
+    response_.body() = std::move(page.text);
     response_.prepare_payload();
     stream_.expires_after(kPagePatience);
     http::async_write(stream_, response_, [self = shared_from_this()](const error_code&, std::size_t) { self->end(); });
@@ -283,8 +283,8 @@ std::uint16_t WebDoor::open(std::uint16_t port) {
   return impl_->port;
 }
 
-void WebDoor::serve(std::string page) {
-  impl_->page = std::move(page);
+void WebDoor::serve(WebSite site) {
+  impl_->site = std::move(site);
   impl_->accept();
 }
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The server that browsers on this machine talk to.
+/// The server that browsers and monitors on this machine talk to.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace boost::asio {
 class io_context;
@@ -50,8 +52,8 @@ class Outbox {
 };
 
 // ==== web request ====
-// Which requests of a browser are answered. The door is open on this machine alone, but any page that a browser shows can make it knock:
-// by an address of its own that resolves to this machine, or by a script.
+// Which requests are answered. The door is open on this machine alone, but any page that a browser shows can make it knock: by an
+// address of its own that resolves to this machine, or by a script.
 
 struct WebRequest {
   std::string_view method, target;
@@ -68,14 +70,27 @@ struct WebAnswer {
 inline constexpr unsigned kPageAnswer = 200, kLiveAnswer = 101;
 inline constexpr std::string_view kPageTarget = "/", kLiveTarget = "/live";
 
+/// What is at a target.
+struct WebPage {
+  std::string text, type = "text/plain; charset=utf-8";
+  unsigned status = kPageAnswer;
+};
+
+/// What a door has.
+struct WebSite {
+  std::vector<std::string_view> targets;  ///< kLiveTarget: its pages may observe
+  std::string_view nothing;               ///< sentence where none of them is meant
+  std::function<WebPage(std::string_view target)> page;
+};
+
 /// The host must be this machine by number or as localhost, with our port, and a WebSocket must be asked for by the page from there.
-WebAnswer judge(const WebRequest& request, std::uint16_t port);
+WebAnswer judge(const WebRequest& request, std::uint16_t port, const WebSite& site);
 
 // ==== web door ====
-// A door for browsers on this machine: the page by HTTP, and a WebSocket for each page that observes. The only file of the program that
-// knows Boost.Beast. All of it runs in the thread of its context.
+// A door on this machine: pages by HTTP, and a WebSocket for each page that observes. The only file of the program that knows Boost.Beast.
+// All of it runs in the thread of its context.
 //
-// Whoever knocks is distrusted: requests are judged by web_request.h, are small, without a body, and come within seconds; so many at a
+// Whoever knocks is distrusted: requests are judged, are small, without a body, and come within seconds; so many at a
 // time. An observer that sends anything is shown out; one that is too slow as well, and may come again.
 
 class WebDoor {
@@ -92,7 +107,7 @@ class WebDoor {
   /// Listen on the loopback.   in  port  0: any free one   out  the port   throws boost::system::system_error
   std::uint16_t open(std::uint16_t port);
   /// Let in from now on.
-  void serve(std::string page);
+  void serve(WebSite site);
 
   bool has_observers() const noexcept;
   /// Send a message to all observers. Those who have had none yet begin with a key message, behind `hello`.

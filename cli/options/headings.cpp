@@ -55,7 +55,7 @@ struct Row {
 constexpr std::string_view kBounds = "Bounds", kCoding = "Coding", kRigid = "Coding of rigid objects",
                            kDeformable = "Coding of deformable objects", kDeformation = "Simulation of deformable objects",
                            kHand = "Virtual hand", kDevice = "Device", kNetwork = "Network", kRecording = "Recording",
-                           kOutput = "Output";
+                           kWatch = "Operation", kOutput = "Output";
 
 constexpr std::array kOptions{
     Row{"--deadband", kBounds},
@@ -85,6 +85,7 @@ constexpr std::array kOptions{
     Row{"--quant-bits", kDeformable},
     Row{"--keep-models", kDeformable},
     Row{"--layered", kDeformable},
+    Row{"--check", kOutput},
     Row{"--method", kDeformation},
     Row{"--solver", kDeformation},
     Row{"--deformable-noise", kDeformation},
@@ -108,6 +109,10 @@ constexpr std::array kOptions{
     Row{"--told", kNetwork},
     Row{"--clients", kNetwork},
     Row{"--key", kNetwork},
+    Row{"--observe", kWatch},
+    Row{"--metrics", kWatch},
+    Row{"--log", kWatch},
+    Row{"--check", kWatch},
     Row{"--subject", kRecording},
     Row{"--remarks", kRecording},
     Row{"--output", kOutput},

@@ -254,7 +254,9 @@ Option* add_told(Command& app, double& value) {
 }
 
 Option* add_key(Command& app, std::string& value) {
-  return app.add_option("--key", value, "Seal the session with this key, the same at both ends; see `tactus key` [not sealed]")
+  return app
+      .add_option("--key", value,
+                  "Seal the session with the key in this file; at the server also a list of users. See `tactus key` [not sealed]")
       ->type_name("FILE");
 }
 

@@ -167,6 +167,46 @@ Json network_json(const Report& r, const NetworkReport& user) {
   return out;
 }
 
+Json worst_json(const RigidReport::Worst& worst, const char* key) {
+  Json out{{key, worst.value}};
+  if (worst.object.empty()) return out;
+  out["at_s"] = worst.at;
+  out["object"] = worst.object;
+  return out;
+}
+
+Json rigid_json(const RigidReport& r) {
+  Json out{{"penetration", worst_json(r.penetration, "m")},
+           {"drift", worst_json(r.drift, "m")},
+           {"flight", worst_json(r.flight, "J")},
+           {"contact_energy_J", r.contact_energy},
+           {"momentum_N_s", r.momentum},
+           {"residual", worst_json(r.residual, "m_s")},
+           {"contact_steps", r.steps},
+           {"contact_steps_again", r.again},
+           {"contact_steps_unsolved", r.unsolved}};
+  for (const RigidReport::Object& o : r.objects)
+    out["objects"].push_back({{"name", o.name}, {"penetration_m", o.penetration}, {"drift_m", o.drift}, {"flight_J", o.flight}});
+  return out;
+}
+
+Json difference_json(const CheckReport::Quantity& q, const std::string& name, const std::string& unit) {
+  const double rms = q.count > 0 ? std::sqrt(q.square_sum / static_cast<double>(q.count)) : 0;
+  return {{name, q.name}, {"largest_" + unit, q.largest}, {"at_s", q.at}, {"rms_" + unit, rms}, {"of_" + unit, q.of}};
+}
+
+Json check_json(const CheckReport& c) {
+  Json out{{"against", c.against}, {"cpu_s", c.cpu}};
+  for (std::size_t i = 0; i < c.objects.size(); ++i) {
+    if (c.objects[i].of == 0 && c.objects[i].largest == 0 && c.turns[i] == 0) continue;
+    out["objects"].push_back(difference_json(c.objects[i], "name", "m"));
+    out["objects"].back()["rotation_rad"] = c.turns[i];
+  }
+  for (const CheckReport::Quantity& user : c.users) out["users"].push_back(difference_json(user, "user", "N"));
+  for (const CheckReport::Quantity& mesh : c.meshes) out["deformables"].push_back(difference_json(mesh, "name", "m"));
+  return out;
+}
+
 /// What only some commands know.
 void add_particulars(Json& out, const Report& r) {
   if (r.seed) out["seed"] = *r.seed;
@@ -174,6 +214,8 @@ void add_particulars(Json& out, const Report& r) {
   constexpr std::array kWays{"direct", "eased", "interpolated"};
   if (r.client) out["client"] = kWays[static_cast<std::size_t>(*r.client)];
   for (const DeformableReport& d : r.deformables) out["solvers"].push_back(solver_json(d));
+  for (const CheckReport& check : r.checks) out["checks"].push_back(check_json(check));
+  if (r.rigid) out["rigid"] = rigid_json(*r.rigid);
   for (const TouchReport& t : r.touches) {
     out["touches"].push_back({{"user", t.user},
                               {"share", t.share},

@@ -163,6 +163,38 @@ struct DeformableReport {
   double energy_gained = 0;             ///< without cause, over the whole run; share of all the work of forces
 };
 
+/// What a rigid simulation knows of its own error.
+struct RigidReport {
+  struct Worst {
+    double value = 0, at = 0;  ///< at [s]
+    std::string object{};      ///< empty: there was none
+  };
+  struct Object {
+    std::string name;
+    double penetration = 0, drift = 0, flight = 0;  ///< [m], [m], [J]
+  };
+  Worst penetration{}, drift{}, flight{}, residual{};  ///< [m], [m], [J], [m/s]
+  double contact_energy = 0, momentum = 0;             ///< [J], [N s]
+  std::uint64_t steps = 0, again = 0, unsolved = 0;    ///< of groups of touching objects
+  std::vector<Object> objects{};
+};
+
+/// How far a simulation was from a finer one of the same scene.
+struct CheckReport {
+  struct Quantity {
+    std::string name;                    ///< of an object, or a user
+    double largest = 0, at = 0, of = 0;  ///< the largest difference, when [s], and the largest value itself
+    double square_sum = 0;               ///< of differences,
+    std::uint64_t count = 0;             ///< so many
+  };
+  std::string against;              ///< "half the step"
+  std::vector<Quantity> objects{};  ///< [m] position, of the way from its first one
+  std::vector<double> turns{};      ///< [rad] largest difference in rotation, one per object
+  std::vector<Quantity> users{};    ///< [N] force felt
+  std::vector<Quantity> meshes{};   ///< [m] vertex farthest off, of the largest displacement
+  double cpu = 0;                   ///< [s] of the finer run
+};
+
 /// How a client passes over to updates.
 enum class ClientWay : std::uint8_t { direct, eased, interpolated };
 
@@ -181,6 +213,8 @@ struct Report {
   std::optional<std::uint64_t> seed{}, segments{};
   std::optional<ClientWay> client{};
   std::vector<DeformableReport> deformables{};
+  std::optional<RigidReport> rigid{};
+  std::vector<CheckReport> checks{};
   std::vector<TouchReport> touches{};  ///< one per user
   std::vector<std::string> warnings{};
   std::vector<std::string> notes{};  ///< of readers, which were printed as they came

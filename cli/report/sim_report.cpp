@@ -68,6 +68,73 @@ void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, 
   }
 }
 
+// ==== rigid report ====
+
+namespace {
+
+constexpr double kDeep = 0.1;    // of an object's smallest edge: penetration that is worth a warning
+constexpr double kDrift = 1e-3;  // [m]
+
+void warn_of_penetration(const sim::Scene& scene, const sim::RigidErrors& errors, Report& report) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const Vec3& size = scene.objects[i].size;
+    const double edge = std::min({size.x, size.y, size.z}), depth = errors.objects[i].penetration;
+    if (depth <= kDeep * edge) continue;
+    report.warnings.push_back(
+        fmt::format("{}: it was {:.2g} mm deep in another object or the floor, and is {:.3g} mm thick. Make it "
+                    "thicker, slower or lighter",
+                    scene.objects[i].name, 1e3 * depth, 1e3 * edge));
+  }
+}
+
+}  // namespace
+
+void report_rigid(const sim::Scene& scene, const sim::RigidErrors& errors, Report& report) {
+  if (std::ranges::none_of(scene.objects, [](const sim::SceneObject& object) { return object.dof != Dof::none; })) return;
+  const auto name = [&scene](const sim::Worst& worst) { return scene.objects[worst.object].name; };
+  const auto worst = [&name](const sim::Worst& of) {
+    if (of.tick < 0) return RigidReport::Worst{};
+    return RigidReport::Worst{of.value, sim::kTick * static_cast<double>(of.tick), name(of)};
+  };
+  report.rigid.emplace(RigidReport{.penetration = worst(errors.penetration),
+                                   .drift = worst(errors.drift),
+                                   .flight = worst(errors.flight),
+                                   .residual = worst(errors.residual),
+                                   .contact_energy = errors.contact_energy,
+                                   .momentum = errors.momentum,
+                                   .steps = errors.steps,
+                                   .again = errors.solved_again,
+                                   .unsolved = errors.unsolved});
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    report.rigid->objects.push_back(
+        {scene.objects[i].name, errors.objects[i].penetration, errors.objects[i].drift, errors.objects[i].flight});
+  if (errors.unsolved > 0)
+    report.warnings.push_back(fmt::format(
+        "{}: the contact solver left {:.2g} mm/s of approach at {:.3f} s, and {} unsolved in all. The contacts of what is "
+        "stacked there are wrong: bring the masses nearer to each other, or stack less",
+        name(errors.residual), 1e3 * errors.residual.value, sim::kTick * static_cast<double>(errors.residual.tick),
+        counted(errors.unsolved, "step")));
+  if (errors.unswept.tick >= 0)
+    report.warnings.push_back(fmt::format("{}: at {:.3g} m/s it may pass thin objects unnoticed. Make it slower or larger",
+                                          name(errors.unswept), errors.unswept.value));
+  if (errors.drift.value > kDrift)
+    report.warnings.push_back(
+        fmt::format("{}: it crept {:.2g} mm while nobody pushed it. Stack less, or bring the masses nearer to "
+                    "each other",
+                    name(errors.drift), 1e3 * errors.drift.value));
+  warn_of_penetration(scene, errors, report);
+}
+
+Outcome check_contacts(const Report& report, const std::string& scene) {
+  if (!report.rigid || 20 * report.rigid->unsolved <= report.rigid->steps) return {};
+  Failure failure{
+      fmt::format("{}: contacts were not solved in {} of {} steps", scene, report.rigid->unsolved, report.rigid->steps),
+      "The objects in the warnings may be anywhere: bring masses that touch nearer to each other, or stack less."};
+  failure.cause = Failure::Cause::bound;
+  failure.file = scene;
+  return tl::unexpected(std::move(failure));
+}
+
 // ==== network judge ====
 
 namespace {

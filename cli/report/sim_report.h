@@ -12,6 +12,7 @@
 #include "cli/report/report.h"
 
 namespace tactus::sim {
+struct RigidErrors;
 struct Scene;
 class Simulation;
 }  // namespace tactus::sim
@@ -31,6 +32,13 @@ struct Report;
 /// One TouchReport for each user, and a warning for each that chatters, presses a deformable object harder than eq. 4.38 allows at
 /// the place of the largest force, or was held by a coupling that its device's smoothing makes swing.
 void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, Report& report);
+
+// ==== rigid report ====
+
+/// What the simulation of rigid objects knows of its own error, and a warning for each that makes the trace doubtful. Nothing if none moves.
+void report_rigid(const sim::Scene& scene, const sim::RigidErrors& errors, Report& report);
+/// A failure if more than a twentieth of the steps with contacts were not solved.   in  scene  its file
+Outcome check_contacts(const Report& report, const std::string& scene);
 
 // ==== network judge ====
 

@@ -88,7 +88,7 @@ class Sender(Handle):
         call(core().tactus_sender_create, handle_of(scene, Scene), self._options, ctypes.byref(self._handle))
 
     def encode(self, tick: int, objects: npt.ArrayLike | None = None, contacts: npt.NDArray[np.void] | None = None,
-               shapes: Sequence[Shape] = ()) -> list[Packet]:
+               shapes: Sequence[Shape] = (), moved: npt.ArrayLike | None = None) -> list[Packet]:
         """Evaluate a tick and code the packets it needs, mostly none.
 
         tick      rising
@@ -96,6 +96,8 @@ class Sender(Handle):
                   angular velocity 3 [rad/s]; world frame
         contacts  (C,) of dtype CONTACT, of rigid objects, any number
         shapes    one per mesh of the scene, or none
+        moved     indices of the objects whose row is not that of the tick before: what rests then costs the encoder nothing. None: all rows are
+                  compared. An object that moves and is not named is not sent
         raises    Error
         """
         states = _array(objects, 13, "objects")
@@ -108,6 +110,11 @@ class Sender(Handle):
         truth.objects, truth.object_count = states.ctypes.data, len(states)
         truth.contacts, truth.contact_count = touched.ctypes.data, len(touched)
         truth.shapes, truth.shape_count = ctypes.addressof(forms), len(forms)
+        named = np.ascontiguousarray(moved if moved is not None else (), np.uint32)
+        if named.ndim != 1:
+            raise ValueError(f"moved has shape {named.shape}, not (M,)")
+        if moved is not None:
+            truth.moved, truth.moved_count = named.ctypes.data, len(named)
         count = ctypes.c_size_t()
         call(core().tactus_sender_encode, self.handle, tick, truth, ctypes.byref(count))
         del kept

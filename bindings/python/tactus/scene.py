@@ -46,6 +46,10 @@ class RigidObject:
     driven: Driven | None = None
 
 
+_METHODS = {"backward-euler": _abi.TACTUS_METHOD_BACKWARD_EULER, "tr-bdf2": _abi.TACTUS_METHOD_TR_BDF2,
+            "velocity-verlet": _abi.TACTUS_METHOD_VELOCITY_VERLET}
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class Elastic:
     """What a mesh is made of, for a participant whose device deforms it in a session. Vertices are those of the mesh, then the inner ones.
@@ -57,6 +61,8 @@ class Elastic:
     material    (T,) of each tetrahedron; None: the first of all
     fixed       vertices that do not move, ascending
     mass_damping [1/s], stiffness_damping [s], gravity (3,) [m/s^2], friction of the proxy
+    method      of a step, that of the server if it has one: "backward-euler", "tr-bdf2", "velocity-verlet"
+    sub_steps   of velocity Verlet, 1 to 255, which is stable with them
     """
     tets: npt.NDArray[np.uint32]
     materials: Sequence[Sequence[float]]
@@ -68,6 +74,8 @@ class Elastic:
     stiffness_damping: float = 0
     gravity: Sequence[float] = (0, 0, 0)
     friction: float = 0
+    method: str = "backward-euler"
+    sub_steps: int = 1
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -252,7 +260,10 @@ class _Builder(Handle):
         told.fixed, told.fixed_count = fixed.ctypes.data, len(fixed)
         told.material = None if material is None else material.ctypes.data
         told.gravity = (ctypes.c_double * 3)(*of.gravity)
-        for part in ("mass_damping", "stiffness_damping", "coupling", "friction"):
+        if of.method not in _METHODS:
+            raise ValueError(f"{name}: method {of.method!r} is none of {', '.join(_METHODS)}")
+        told.method = _METHODS[of.method]
+        for part in ("mass_damping", "stiffness_damping", "coupling", "friction", "sub_steps"):
             setattr(told, part, getattr(of, part))
         call(core().tactus_scene_builder_elastic, self.handle, told, subject=name)
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a service tells systemd (sd_notify(3)): that it is ready, how it does, that it lives, that it ends. Without systemd nothing.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace tactus::cli {
+
+class ServiceManager {
+ public:
+  /// Of $NOTIFY_SOCKET and $WATCHDOG_USEC.
+  ServiceManager();
+  ~ServiceManager();
+  ServiceManager(const ServiceManager&) = delete;
+  ServiceManager& operator=(const ServiceManager&) = delete;
+
+  void ready(std::string_view status) const;  ///< in  status  one line
+  void stopping() const noexcept;
+  /// Twice as often as it must be told.   in  now  [us]   time a comparison
+  void alive(std::uint64_t now) noexcept {
+    if (watchdog_ > 0 && now >= next_) tell_alive(now);
+  }
+
+ private:
+  void tell(std::string_view text) const noexcept;
+  void tell_alive(std::uint64_t now) noexcept;
+
+  int socket_ = -1;
+  std::uint64_t watchdog_ = 0, next_ = 0;  // [us]
+};
+
+}  // namespace tactus::cli
