@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measure the simulation, sessions and signals: `tactus bench STUDY ...`, each study a module of lab/studies.
 
-The points are computed by the program tactus-study (lab/study), which only a build tree with TACTUS_WITH_STUDY has.
+The points are computed by the program tactus-study (lab/study), which only a build tree with TACTUS_WITH_STUDY has; `world` needs NumPy alone.
 """
 import importlib
 import sys
@@ -14,6 +14,9 @@ STUDIES = {
     "delay": "What delay does to force and picture, and what clients can do about it",
     "stability": "Stability limits of each part beside theory",
     "session": "How sessions bear networks that lose, delay and reorder",
+    "scale": "What a server of many clients and objects costs",
+    "join": "How long a client takes to join over a line",
+    "world": "A large world on several servers, on paper: load, hand-overs, traffic",
     "signals": "What the devices and forces of recordings cost on their way",
 }
 

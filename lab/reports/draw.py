@@ -57,7 +57,8 @@ def errors(folder, out):
     options = argparse.Namespace(output=str(folder), scene=None, short=False, runs=5, quiet=True, no_progress=True)
     study = precision.Study(options)
     study.run()
-    for name, make in precision_report.figures({"context": study.context, "times": study.times, "spaces": study.spaces}):
+    for name, make in precision_report.figures({"context": study.context, "times": study.times, "spaces": study.spaces,
+                                                  "rigid": study.rigid}):
         figure.save_all(make(), str(out / name))
 
 

@@ -15,7 +15,9 @@ from common import arguments, program, table
 from common.arguments import Refusal
 from studies import precision_report, report
 
-SCENES = ["membrane", "membrane-stiff", "cantilever"]
+SCENES, RIGID = ["membrane", "membrane-stiff", "cantilever"], "rigid"
+EFFORTS = [(parts, iterations) for parts in (1, 2, 4, 8) for iterations in (25, 100, 400)]  # of rigid objects
+RIGID_COLUMNS = ["motion", "parts", "iterations", "error", "seconds_per_tick", "runs"]
 TOO_SLOW, ALWAYS = 2, 1e-3 * (1 - 1e-9)  # steps below 1 ms of a method so many times slower than real time are left out
 TIME_COLUMNS = ["scene", "method", "steps_per_sample", "step_s", "displacement_end_error", "displacement_error", "velocity_error",
                 "force_error", "energy_error", "weight_error", "push_error", "seconds_per_second", "setup_s", "runs",
@@ -24,14 +26,14 @@ TIME_COLUMNS = ["scene", "method", "steps_per_sample", "step_s", "displacement_e
 SPACE_COLUMNS = ["scene", "poisson", "refinement", "vertices", "tets", "deflection_m_per_n", "solve_s", "quadratic_m_per_n",
                  "step_s",
                  "seconds_per_second", "transient_m"]
-WHOLE, TEXT = {"steps_per_sample", "runs", "unconverged_steps", "refinement", "vertices", "tets"}, {"scene", "method", "taken",
-    "remark"}
+WHOLE = {"steps_per_sample", "runs", "unconverged_steps", "refinement", "vertices", "tets", "parts", "iterations"}
+TEXT = {"scene", "method", "taken", "remark", "motion"}
 
 
 def parser(what):
     made = arguments.parser("bench precision", what, "Example:\n  tactus bench precision --scene membrane -o out/precision")
-    made.add_argument("--scene", action="append", choices=SCENES, metavar="SCENE",
-                      help="membrane, membrane-stiff or cantilever; may be repeated [all]")
+    made.add_argument("--scene", action="append", choices=[*SCENES, RIGID], metavar="SCENE",
+                      help="membrane, membrane-stiff, cantilever or rigid (motions of rigid objects); may be repeated [all]")
     made.add_argument("--short", action="store_true",
                       help="Coarse meshes and few steps: about 30 s of CPU time with --runs 1 instead of half an hour")
     made.add_argument("--runs", default=5, type=arguments.whole(1, 1000), metavar="N", help="Runs per measured time; the median "
@@ -47,7 +49,7 @@ def work(options):
     take_up(options.output, dict(sorted(context.items())), options.force)
     study = Study(options)
     study.run()
-    made = {"context": study.context, "times": study.times, "spaces": study.spaces}
+    made = {"context": study.context, "times": study.times, "spaces": study.spaces, "rigid": study.rigid}
     folder = report.Folder(options.output, (), True)
     folder.write("precision.json", report.json_text(precision_report.as_json(made)))
     folder.write("report.md", precision_report.markdown(made))
@@ -65,7 +67,7 @@ def take_up(folder, context, replace):
     report.make_folder(folder)
     file = os.path.join(folder, "context.json")
     if replace:
-        for name in ("time.csv", "space.csv", "context.json"):
+        for name in ("time.csv", "space.csv", "rigid.csv", "context.json"):
             if os.path.lexists(os.path.join(folder, name)):
                 os.remove(os.path.join(folder, name))
     if not os.path.exists(file):
@@ -145,22 +147,38 @@ class Study:
             self.context = json.load(file)
         self.time_table = Growing(os.path.join(options.output, "time.csv"), TIME_COLUMNS)
         self.space_table = Growing(os.path.join(options.output, "space.csv"), SPACE_COLUMNS)
-        self.times, self.spaces = [], []
+        self.times, self.spaces, self.rigid = [], [], []
         self.references, self.reference_scene = None, ""
 
     def point(self, kind, **request):
         return program.point("precision", point=kind, **request)
 
     def run(self):
-        scenes = self.options.scene or SCENES
-        plans = [self.point("plan", scene=scene, short=self.options.short) for scene in scenes]
+        scenes = self.options.scene or [*SCENES, RIGID]
+        plans = [self.point("plan", scene=scene, short=self.options.short) for scene in scenes if scene != RIGID]
+        motions = self.point("motions")["motions"] if RIGID in scenes else []
         total = sum(1 + len(plan["methods"]) * len(plan["steps_per_sample"]) + len(plan["space"]) for plan in plans)
+        total += len(motions) * len(EFFORTS)
         self.progress = program.Progress("bench precision", total, not (self.options.quiet or self.options.no_progress))
         with tempfile.TemporaryDirectory() as self.references:
             for plan in plans:
                 self.time_study(plan)
                 self.space_study(plan)
+        self.rigid_study(motions)
         self.progress.clear()
+
+    def rigid_study(self, motions):
+        if not motions:
+            return
+        found = Growing(os.path.join(self.options.output, "rigid.csv"), RIGID_COLUMNS)
+        for motion in motions:
+            points = []
+            for parts, iterations in EFFORTS:
+                known = found.find(motion=motion["name"], parts=parts, iterations=iterations)
+                points.append(known or found.add(self.point("rigid", motion=motion["name"], parts=parts, iterations=iterations,
+                                                            runs=self.options.runs)))
+                self.progress.step()
+            self.rigid.append(motion | {"points": points})
 
     def time_study(self, plan):
         points = []

@@ -95,7 +95,37 @@ def omissions(time):
     return out
 
 
+def rigid_cells(motion, point):
+    return [motion["title"], str(point["parts"]), str(point["iterations"]), scientific(point["error"]), motion["unit"],
+            f"{1e6 * point['seconds_per_tick']:.3g}"]
+
+
+RIGID_HEAD = ["motion", "parts of a tick", "iterations", "error", "unit", "us/tick"]
+
+
+def rigid_figure(motion):
+    """Processor time over error: a line for each number of iterations, marks at 1, 2, 4 and 8 parts of a tick."""
+    fig, axes = figure.pyplot().subplots(figsize=(figure.WIDTH, 3.6))
+    for number, iterations in enumerate(sorted({point["iterations"] for point in motion["points"]})):
+        points = [p for p in motion["points"] if p["iterations"] == iterations and p["error"]]
+        if points:
+            figure.line(axes, [p["error"] for p in points], [1e6 * p["seconds_per_tick"] for p in points], number,
+                        label=f"{iterations} iterations")
+        for p in points:
+            axes.annotate(str(p["parts"]), (p["error"], 1e6 * p["seconds_per_tick"]), xytext=(3, 3),
+                          textcoords="offset points", fontsize=6)
+    figure.logarithmic(axes)
+    axes.set_title(motion["title"] + "; numbers: parts of a tick", loc="left")
+    axes.set_xlabel(f"error [{motion['unit']}]")
+    axes.set_ylabel("processor time per tick [us]")
+    axes.legend()
+    return fig
+
+
 def show(made):
+    if made["rigid"]:
+        table.show(RIGID_HEAD, [rigid_cells(motion, point) for motion in made["rigid"] for point in motion["points"]])
+        print()
     for time in made["times"]:
         print(f"{time['plan']['title']}\n{reference_text(time)}\n")
         rows, before = [], None
@@ -137,6 +167,8 @@ def as_json(made):
     out = {"schema": "tactus.precision/1", "context": made["context"]}
     if made["times"]:
         out["time"] = [of_time(time) for time in made["times"]]
+    if made["rigid"]:
+        out["rigid"] = made["rigid"]
     return out | ({"space": [of_space(space) for space in made["spaces"]]} if made["spaces"] else {})
 
 
@@ -169,7 +201,8 @@ def markdown(made):
            "per step. "
            "Times are medians. `chosen` is the\nmethod that `tactus sim` takes.\n\n")
     out += "".join(f"* {key}: {value}\n" for key, value in made["context"].items())
-    out += "\n## At 1 kHz\n\n" + at_one_millisecond(made)
+    if made["times"]:
+        out += "\n## At 1 kHz\n\n" + at_one_millisecond(made)
     for time in made["times"]:
         plan = time["plan"]
         out += (f"\n## {plan['scene']}\n\n{plan['title']}, {plan['vertices']} vertices, {plan['tets']} tetrahedra, "
@@ -179,6 +212,11 @@ def markdown(made):
         out += "\n" + report.markdown(TIME_HEAD, [time_cells(point) for point in time["points"]])
         if omissions(time):
             out += "\n### Omissions\n\n" + "".join(f"* {text}\n" for text in omissions(time))
+    if made["rigid"]:
+        out += ("\n## Rigid objects\n\nODE in parts of a tick of 1 ms, by iterations of the contact solver; where they leave more than "
+                "2 mm/s it solves again. References are formulas, or\nthe same with 64 parts and 400 iterations.\n\n")
+        out += "".join(f"![{motion['title']}](rigid-{motion['name']}.svg)\n" for motion in made["rigid"])
+        out += "\n" + report.markdown(RIGID_HEAD, [rigid_cells(motion, point) for motion in made["rigid"] for point in motion["points"]])
     if not made["spaces"]:
         return out
     out += ("\n## Space error\n\n"
@@ -196,6 +234,8 @@ def figures(made):
     for time in made["times"]:
         for quantity in DRAWN:
             yield f"{time['plan']['scene']}-{quantity}", lambda time=time, quantity=quantity: time_figure(time, quantity)
+    for motion in made["rigid"]:
+        yield "rigid-" + motion["name"], lambda motion=motion: rigid_figure(motion)
     for scene in dict.fromkeys(space["scene"] for space in made["spaces"]):
         yield "space-" + scene, lambda scene=scene: space_figure([space for space in made["spaces"] if space["scene"] == scene])
 

@@ -8,13 +8,14 @@ from studies import report
 from studies.report import per
 
 TICKS, FEW_TICKS = 120_000, 10_000  # of the bodies that swing
-MADE = ("boxes", "knocks", "billiard", "juggling")  # motions of many objects
+MADE = ("boxes", "knocks", "billiard", "juggling", "sheet")  # motions of many objects
 COLUMNS = ["over a bound", "longest [ms]", "mean [ms]", "shown behind [ms]", "payload [kbit/s]", "x chain", "session", "UDP/IPv4",
            "all down", "all up"]
 HEAD = ["motion", "group", "case", "ticks", "over", "over_position", "over_rotation", "over_force", "over_shape", "longest_s",
         "mean_s",
         "behind_s", "down_payload_bit_per_s", "chain_payload_bit_per_s", "down_session_bit_per_s", "down_udp_ipv4_bit_per_s",
-        "up_bit_per_s", "recovery_s", "bounds_widest", "bounds_widened_s", "wrong_states"]
+        "up_bit_per_s", "recovery_s", "bounds_widest", "bounds_widened_s", "wrong_states", "error_median_bounds",
+        "error_p95_bounds", "error_worst_bounds"]
 # Options of `tactus encode`, handed on as they are typed.
 VALUES = ["-p/--deadband", "--visual", "--fixed", "--length-unit", "--haptic", "--alpha", "--jnd-share", "--force-floor",
           "--heartbeat",
@@ -38,7 +39,7 @@ def parser(what):
     made.add_argument("traces", metavar="TRACE", nargs="*", help="Also study these recordings, at the bounds given by options")
     made.add_argument("--made", choices=MADE, action="append", default=[], metavar="NAME",
                       help="Also study 10 s of a motion of many objects: boxes (12 that tumble), knocks (100 objects), billiard "
-                           "(16 balls), juggling (9 clubs); may be repeated")
+                           "(16 balls), juggling (9 clubs), sheet (5041 vertices); may be repeated")
     made.add_argument("--short", action="store_true", help="Run two cases over 10 s")
     made.add_argument("--seed", default=1, type=arguments.whole(0, 2**64 - 1), metavar="N", help="Seed of the networks [1]")
     arguments.add_report_options(made, output_help="Folder for report.md, CSV and figure", force=True)
@@ -129,7 +130,8 @@ def csv_rows(motions):
         return [motion["name"], case["group"], case["case"], case["ticks"],
                 *(broken[key] for key in ("any", "position", "rotation", "force", "shape")), *(f"{value:.6g}"
                     for value in times + rates),
-                f"{case.get('recovery_s', 0):.6g}", f"{widened['widest']:.4g}", f"{widened['for_s']:.6g}", case["wrong_states"]]
+                f"{case.get('recovery_s', 0):.6g}", f"{widened['widest']:.4g}", f"{widened['for_s']:.6g}", case["wrong_states"],
+                *(f"{case['error_bounds'][key]:.4g}" for key in ("median", "p95", "worst"))]
     return [row(motion, case) for motion in motions for case in motion["results"]]
 
 

@@ -2,6 +2,7 @@
 #include "lab/study/session.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <numbers>
@@ -33,11 +34,14 @@ std::string milliseconds(Microseconds time) { return std::to_string(time / 1000)
 
 std::string kilobits(std::uint64_t rate) { return std::to_string(rate / 1000) + " kbit/s"; }
 
-double median(std::vector<double>& values) {
+/// in  share  0 to 1
+double quantile(std::vector<double>& values, double share) {
   if (values.empty()) return 0;
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
+  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(at));
+  return values[at];
 }
+double median(std::vector<double>& values) { return quantile(values, 0.5); }
 
 /// When the client has a state that the server has sent after the last outage.
 class Recovery {
@@ -87,6 +91,7 @@ class Judge {
     last_ = shown;
     behind_ += frame.tick - shown;
     ++looks_;
+    widening_ += network.server().status(0).widening;
     Replica& replica = client.receiver()->replica();
     const std::uint64_t shapes_before = judged_shapes(), before = broken();
     for (PlayedShapes& shapes : shapes_) shapes.look(replica, shown);
@@ -105,6 +110,10 @@ class Judge {
     result_.force = errors_.force().ticks_over();
     result_.longest = tick * static_cast<double>(longest_);
     result_.mean = runs_ == 0 ? 0 : tick * static_cast<double>(run_time_) / static_cast<double>(runs_);
+    result_.mean_widening = looks_ == 0 ? 1 : widening_ / static_cast<double>(looks_);
+    result_.error_median = quantile(worst_, 0.5);
+    result_.error_p95 = quantile(worst_, 0.95);
+    result_.worst = quantile(worst_, 1);
     result_.behind = looks_ == 0 ? 0 : tick * static_cast<double>(behind_) / static_cast<double>(looks_);
   }
 
@@ -118,7 +127,21 @@ class Judge {
   void judge_poses(const Replica& replica, std::int64_t shown, std::uint8_t position_exp) {
     if (shown_.empty()) return;
     for (std::uint32_t i = 0; i < shown_.size(); ++i) shown_[i] = to_pose(replica.pose(i, shown), position_exp);
-    errors_.add(motion_.frames[static_cast<std::size_t>(shown)], shown_);
+    const TraceFrame& truth = motion_.frames[static_cast<std::size_t>(shown)];
+    errors_.add(truth, shown_);
+    worst_.push_back(largest_error(truth));
+  }
+  /// [bounds] of position and rotation
+  double largest_error(const TraceFrame& truth) const {
+    const RigidTriggers& bounds = errors_.bounds();
+    double out = 0;
+    for (std::size_t i = 0; i < shown_.size(); ++i) {
+      const Pose& is = truth.objects[i].pose;
+      const Quat turn = shown_[i].rotation * conjugate(is.rotation);
+      const double angle = 2 * std::atan2(norm(Vec3{turn.x, turn.y, turn.z}), std::abs(turn.w));
+      out = std::max({out, norm(shown_[i].position - is.position) / bounds.visual_position, angle / bounds.visual_rotation});
+    }
+    return out;
   }
   /// A run goes from its first tick over a bound to the next one that is not.
   void count(std::int64_t tick, bool over) {
@@ -152,6 +175,8 @@ class Judge {
   ErrorMetrics errors_;
   std::vector<PlayedShapes> shapes_;
   std::vector<Pose> shown_;
+  std::vector<double> worst_;  // [bounds] of each tick
+  double widening_ = 0;        // sum
   std::int64_t last_ = -1, behind_ = 0, looks_ = 0;
   std::int64_t run_begin_ = -1, longest_ = 0, run_time_ = 0, runs_ = 0;  // [ticks]; -1: in no run
 };
@@ -203,13 +228,15 @@ Result<double> chain_payload(const Motion& motion) {
 
 Result<SessionResult> run_session(const Motion& motion, const SessionCase& one) {
   TACTUS_TRY(const SharedScene scene, scene_of(motion, 64));
+  TACTUS_TRY(const double chain, one.limit_of_chain + one.line_of_chain > 0 ? chain_payload(motion) : Result<double>(0.0));
   NetworkOptions options{.uplink = one.link,
                          .downlink = one.link,
                          .device = {},
                          .playout = one.playout,
                          .role = Role::observer,
-                         .rate = one.rate,
+                         .rate = one.limit_of_chain > 0 ? static_cast<std::uint64_t>(one.limit_of_chain * chain) : one.rate,
                          .loss = one.policy};
+  if (one.line_of_chain > 0) options.downlink.rate = one.line_of_chain * chain;
   TACTUS_TRY(const auto network, SessionNetwork::create(scene, 1, motion.sender, options));
   SessionResult result{.of = one};
   Judge judge(motion, result);
@@ -268,6 +295,12 @@ std::vector<SessionCase> session_cases(bool brief, std::uint64_t seed) {
     add("bottleneck, 64 KiB of queue", kilobits(rate), with([&](LinkOptions& l) { l.rate = static_cast<double>(rate); }));
   }
   std::ranges::stable_sort(out.end() - 6, out.end(), std::ranges::greater{}, &SessionCase::group);
+  constexpr std::array kOfChain{3.0, 2.0, 1.5, 1.1};
+  for (const double share : kOfChain) {
+    out.push_back({.group = "rate at most, of the chain", .name = percent(share), .link = plain, .limit_of_chain = share});
+  }
+  for (const double share : kOfChain)
+    out.push_back({.group = "bottleneck, of the chain", .name = percent(share), .link = plain, .line_of_chain = share});
   return out;
 }
 

@@ -31,6 +31,7 @@ Motion tumbling_boxes(std::int64_t ticks, std::uint64_t seed);   ///< 12 that ar
 Motion knocked_objects(std::int64_t ticks, std::uint64_t seed);  ///< 25 wander, 75 rest but for knocks
 Motion billiard(std::int64_t ticks, std::uint64_t seed);         ///< 16 balls that roll and collide
 Motion juggled_clubs(std::int64_t ticks, std::uint64_t seed);    ///< 9 that fly, spin, are caught and thrown again
+Motion drawn_sheet(std::int64_t ticks, std::uint64_t seed);      ///< 5041 vertices, into which a finger draws a dent; 0.25 mm
 
 struct SessionCase {
   std::string group, name;  ///< "loss", "10 %"
@@ -38,6 +39,8 @@ struct SessionCase {
   PlayoutOptions playout{};
   std::uint64_t rate = 0;  ///< [bit/s] at most, down; 0: no limit
   LossPolicy policy = LossPolicy::by_role;
+  double limit_of_chain = 0,
+         line_of_chain = 0;  ///< the rate at most, or that of the bottleneck, as a multiple of chain_payload()
 };
 
 struct SessionResult {
@@ -49,6 +52,8 @@ struct SessionResult {
   double behind = 0;                                               ///< [s] the tick shown, on average
   Traffic down{}, up{};
   Widening widened{};
+  double mean_widening = 1;                           ///< over all ticks judged
+  double error_median = 0, error_p95 = 0, worst = 0;  ///< largest error of a rigid object in a tick, as a multiple of its bound
   double seconds = 0;
   double recovery = 0;     ///< [s] after the last outage until the client has a state sent after it; 0: there was none
   double server_time = 0;  ///< [s] CPU, median: coding a tick and its datagrams

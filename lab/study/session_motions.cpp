@@ -223,4 +223,44 @@ Motion juggled_clubs(std::int64_t ticks, std::uint64_t seed) {
   });
 }
 
+Motion drawn_sheet(std::int64_t ticks, std::uint64_t seed) {
+  constexpr std::uint32_t kSide = 71;
+  constexpr std::int64_t kPeriod = 17;            // [ticks]
+  constexpr double kWidth = 0.3, kFinger = 0.03;  // [m]
+  Motion out{.name = "sheet of 5041 vertices",
+             .info = {.tick_rate = 1000, .objects = {}, .users = {}, .source = {}, .scene = {}},
+             .frames = {}};
+  out.sender.deformable.thresholds.visual = 0.25e-3;
+  TraceDeformable sheet{.name = "sheet", .rest = {}, .period = kPeriod};
+  const auto along = [](std::uint32_t i) { return kWidth * (static_cast<double>(i) / (kSide - 1) - 0.5); };
+  for (std::uint32_t i = 0; i < kSide * kSide; ++i) sheet.rest.vertices.push_back({along(i % kSide), along(i / kSide), 0});
+  for (std::uint32_t y = 0; y + 1 < kSide; ++y)
+    for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
+      const std::uint32_t a = y * kSide + x;
+      sheet.rest.triangles.push_back({a, a + 1, a + kSide + 1});
+      sheet.rest.triangles.push_back({a, a + kSide + 1, a + kSide});
+    }
+  Random random(seed);
+  const double turn[] = {random.uniform(1.5, 2.3), random.uniform(2.3, 3.1), random.uniform(8, 14)};  // [rad/s]
+  const auto depth = [&](const Vec3& at, double time) {
+    const double x = 0.08 * std::sin(turn[0] * time) - at.x, y = 0.08 * std::sin(turn[1] * time + 1) - at.y;
+    const double pressed = 0.01 * std::min(time, 1.0) * (1 + 0.3 * std::sin(5 * time));
+    const double held = (1 - std::pow(2 * at.x / kWidth, 4)) * (1 - std::pow(2 * at.y / kWidth, 4));  // at its rim
+    const double ripple = 0.0006 * std::sin(40 * (at.x + at.y) - turn[2] * time);
+    return held * (pressed * std::exp(-(x * x + y * y) / (2 * kFinger * kFinger)) + ripple);
+  };
+  for (std::int64_t tick = 0; tick < ticks; ++tick) {
+    TraceFrame& frame = out.frames.emplace_back();
+    frame.tick = tick;
+    DeformableSample& shape = frame.meshes.emplace_back();
+    shape.updated = tick % kPeriod == 0;
+    for (std::size_t i = 0; shape.updated && i < sheet.rest.vertices.size(); ++i) {
+      const auto down = static_cast<float>(-depth(sheet.rest.vertices[i], kStep * static_cast<double>(tick)));
+      shape.displacements.insert(shape.displacements.end(), {0.0F, 0.0F, down});
+    }
+  }
+  out.info.meshes.push_back(std::move(sheet));
+  return out;
+}
+
 }  // namespace tactus::sim::study

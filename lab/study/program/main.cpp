@@ -25,6 +25,8 @@ constexpr Study kStudies[]{
     {"stability", "limits of stability of one part of the simulation", stability_point},
     {"delay", "what a round trip does to force and picture, by kind of client", delay_point},
     {"session", "a session over one network, against the truth", session_point},
+    {"scale", "what a server of many clients and objects costs", scale_point},
+    {"join", "how long a client takes to join over a line", join_point},
     {"signals", "what the devices and forces of a recording cost", signals_point},
     {"push", "a push along x, tick by tick", push_point},
     {"ways", "ways of interpolation, sent the same packets", ways_point},

@@ -14,6 +14,8 @@ Json precision_point(Request& request);
 Json stability_point(Request& request);
 Json delay_point(Request& request);
 Json session_point(Request& request);
+Json scale_point(Request& request);
+Json join_point(Request& request);
 Json signals_point(Request& request);
 
 // For `tactus reproduce`: simulations of chapter 3 ...

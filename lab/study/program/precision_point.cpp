@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Points of `tactus bench precision`: the reference of a scene, a method at a step size against it, the error of a mesh.
+/// Points of `tactus bench precision`: the reference of a scene, a method at a step size against it, the error of a mesh, a rigid motion.
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "lab/study/precision.h"
+#include "lab/study/precision_rigid.h"
 #include "lab/study/precision_space.h"
 #include "lab/study/program/points.h"
 
@@ -165,6 +167,36 @@ Json space(Request& request) {
           {"transient_m", p.deflection}};
 }
 
+Json rigid(Request& request) {
+  const auto name = request.get<std::string>("motion");
+  const sim::RigidEffort effort{.parts = request.get("parts", 1), .iterations = request.get("iterations", 100)};
+  const int runs = request.get("runs", library::Timing{}.runs);
+  request.check_all_known();
+  const auto motions = library::rigid_motions();
+  const auto found = std::ranges::find(motions, name, &library::RigidMotion::name);
+  if (found == motions.end() || effort.parts < 1 || effort.iterations < 1 || runs < 1)
+    refuse_request("\"motion\", \"parts\", \"iterations\" or \"runs\"", "The point \"motions\" lists the motions.");
+  std::vector<double> seconds(static_cast<std::size_t>(runs));
+  double error = 0;
+  for (double& s : seconds) error = found->error(effort, s);
+  std::ranges::sort(seconds);
+  Json out{{"motion", name},
+           {"parts", effort.parts},
+           {"iterations", effort.iterations},
+           {"runs", runs},
+           {"seconds_per_tick", seconds[seconds.size() / 2]}};
+  out["error"] = std::isfinite(error) ? Json(error) : Json();
+  return out;
+}
+
+Json motions(Request& request) {
+  request.check_all_known();
+  Json out = Json::array();
+  for (const library::RigidMotion& m : library::rigid_motions())
+    out.push_back({{"name", m.name}, {"title", m.title}, {"unit", m.unit}});
+  return {{"motions", out}};
+}
+
 }  // namespace
 
 Json precision_point(Request& request) {
@@ -173,7 +205,9 @@ Json precision_point(Request& request) {
   if (point == "reference") return reference(request);
   if (point == "method") return method(request);
   if (point == "space") return space(request);
-  refuse_request("there is no point \"" + point + "\"", "Give plan, reference, method or space.");
+  if (point == "motions") return motions(request);
+  if (point == "rigid") return rigid(request);
+  refuse_request("there is no point \"" + point + "\"", "Give plan, reference, method, space, motions or rigid.");
 }
 
 }  // namespace tactus::study

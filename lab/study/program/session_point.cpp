@@ -69,7 +69,8 @@ Motion made_motion(Request& request) {
   if (name == "knocks") return library::knocked_objects(ticks, seed);
   if (name == "billiard") return library::billiard(ticks, seed);
   if (name == "juggling") return library::juggled_clubs(ticks, seed);
-  refuse_request("\"made\": there is no motion \"" + name + "\"", "Give swinging, boxes, knocks, billiard or juggling.");
+  if (name == "sheet") return library::drawn_sheet(ticks, seed);
+  refuse_request("\"made\": there is no motion \"" + name + "\"", "Give swinging, boxes, knocks, billiard, juggling or sheet.");
 }
 
 library::SessionCase with_policy(library::SessionCase one, Request& request) {
@@ -117,7 +118,9 @@ Json json_of(const library::SessionResult& r) {
            {"shown_behind_s", r.behind},
            {"down_bit_per_s", {{"payload", down.payload}, {"session", down.session}, {"udp_ipv4", down.headers}}},
            {"up_bit_per_s", up.all()},
-           {"bounds_widened", {{"widest", r.widened.widest}, {"for_s", 1e-6 * static_cast<double>(r.widened.time)}}},
+           {"bounds_widened",
+            {{"widest", r.widened.widest}, {"mean", r.mean_widening}, {"for_s", 1e-6 * static_cast<double>(r.widened.time)}}},
+           {"error_bounds", {{"median", r.error_median}, {"p95", r.error_p95}, {"worst", r.worst}}},
            {"wrong_states", r.down.wrong_states},
            {"coding_cpu_s", r.server_time}};
   if (r.recovery > 0) out["recovery_s"] = r.recovery;
@@ -133,7 +136,8 @@ Json session_point(Request& request) {
     const auto index = request.get<std::size_t>("index");
     const Motion motion = motion_of(request);
     if (index >= cases.size()) refuse_request("\"index\"", "The point \"motion\" lists the cases.");
-    const library::SessionCase one = with_policy(cases[index], request);
+    library::SessionCase one = with_policy(cases[index], request);
+    if (request.has("round_trip_us")) one.link.delay = request.get<std::int64_t>("round_trip_us") / 2;
     request.check_all_known();
     return json_of(need(library::run_session(motion, one), motion.name));
   }
