@@ -116,7 +116,7 @@ class Scene:
         version, profile, flags, body_size = file.numbers("4xBBHI")
         require(version == 1, "R-STR-2")
         require(profile == 0, "R-STR-3")
-        require(flags <= 63, "R-STR-4")
+        require(flags <= 127, "R-STR-4")
         body = Bytes(file.take(body_size), "R-STR-5")
         require((zlib.crc32(file.data[:file.at]),) == file.numbers("I"), "R-STR-15")
         (self.tick_rate, self.position_exp, velocity_exp, self.rotation_exp, self.angular_exp, self.max_extrapolation,
@@ -133,7 +133,7 @@ class Scene:
         self.names, self.dof, self.initial = [], [], []     # a state: tick, position, rotation, velocities, ease and keep
         for _ in range(object_count): self.add_object(body)
         self.eased = flags == 4
-        require(flags in (0, 4), "deformable objects (20, 4), loads (45), motion constants and driven objects (40, 4) are left out here")
+        require(flags in (0, 4), "deformable objects (20, 4), loads (45), motion constants, driven objects (40, 4) and interest are left out here")
         self.moving = [i for i, dof in enumerate(self.dof) if dof]
 
     def add_object(self, body):                             # 20, 3

@@ -19,11 +19,12 @@ SHARED = {"base"}  # folders of codec/ that are not subjects of the specificatio
 # Everything else in codec/ is integers: what both ends compute is the same on every machine. These files are doors: SI units come in
 # or go out, a sender decides what to send, options are read once, a quotient of integers is estimated and then corrected, and the
 # basis and the elastic bodies that both ends compute are binary64 in a written order.
-FLOATS = {"base/geometry", "base/quantise", "base/tri_mesh", "client/replica", "client/stiffness_reduction", "deformable/basis",
+FLOATS = {"base/elementary", "base/geometry", "base/quantise", "base/tri_mesh", "client/replica", "client/stiffness_reduction", "deformable/basis",
           "deformable/cluster_basis", "deformable/deformable_encoder", "deformable/displacement", "deformable/encoder_fit", "deformable/kriging",
           "deformable/motion_clusters", "deformable/spring_basis", "deformable/thesis_encoder", "deformable/vertex_coder", "elastic/driven_shape",
-          "elastic/elastic_solver", "elastic/elastic_touch", "load/load_encoder", "load/load_state", "packet/sender_policy",
-          "packet/substream_encoder", "rigid/encoder_choices", "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger",
+          "elastic/elastic_elements", "elastic/elastic_solver", "elastic/elastic_touch", "load/load_encoder", "load/load_state", "packet/sender_policy",
+          "packet/substream_encoder", "rigid/encoder_choices", "rigid/level_of_detail", "rigid/rigid_encoder", "rigid/rigid_state", "rigid/rigid_truth",
+          "rigid/rigid_work", "rigid/trigger",
           "scene/elastic_syntax", "scene/scene_builder", "scene/scene_objects", "sender", "session/congestion", "session/exchange",
           "session/server_connection", "session/session_client", "session/session_options", "session/session_server",
           "signal/device_signal", "signal/force_signal"}
@@ -31,9 +32,12 @@ FLOATS = {"base/geometry", "base/quantise", "base/tri_mesh", "client/replica", "
 # the metrics are not among them; of the simulation only what runs the program that fills meshes.
 SYSTEM = {
     "cli/commands/cmd_lab.cpp": "scripts in the place of the program, or fed by it",
+    "cli/commands/sim_check.cpp": "a finer run beside the first", "cli/commands/sim_check.h": "its process",
     "cli/commands/cmd_link.cpp": "to wait for datagrams of many sockets",
+    "cli/live/background_work.cpp": "a thread that gives way to others",
     "cli/live/device_loop.cpp": "single keys",
     "cli/live/device_loop.h": "single keys",
+    "cli/live/notify.cpp": "the manager of services",
     "cli/live/token_file.cpp": "a file that one program holds",
     "cli/live/ticker.cpp": "to wait for a time or a datagram",
     "cli/output.cpp": "files that appear whole or not at all, and go when a signal comes",
@@ -46,7 +50,7 @@ SYSTEM = {
     "device/real_time.cpp": "priorities, memory that stays",
     "device/shared_library.cpp": "libraries that are looked for when they are needed",
     "io/net/udp.cpp": "sockets",
-    "io/seal/key.cpp": "a file that its owner alone reads",
+    "io/seal/secret_file.cpp": "a file that its owner alone reads",
     "sim/surface/program.cpp": "a program that fills meshes",
 }
 SYSTEM_HEADER = re.compile(r"^\s*#\s*include\s+<((?:sys|net|netinet|arpa|linux)/[^>]+|unistd\.h|fcntl\.h|poll\.h|termios\.h|spawn\.h|dlfcn\.h|"
@@ -89,6 +93,7 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "device/openhaptics": "openhaptics",
     "io/net": "net",
     "io/seal/key": "seal_association",
+    "io/seal/secret_file": "seal_key_list",
     "io/trace/byte_source": "trace",
     "io/trace/csv_export": "csv",
     "io/trace/csv_fields": "csv",

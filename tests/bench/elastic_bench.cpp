@@ -25,7 +25,7 @@ SharedScene declared() {
   const sim::SceneDeformable& object = membrane().deformables[0];
   SceneBuilder builder;
   builder.deformable("membrane", sim::surface(object.mesh).mesh, {.frame_period = static_cast<double>(object.rate)});
-  builder.elastic(sim::elastic_physics(object, membrane().gravity).value()).baselines(64);
+  builder.elastic(sim::elastic_physics(object, membrane().gravity, {}).value()).baselines(64);
   return builder.build().value();
 }
 

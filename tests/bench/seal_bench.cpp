@@ -19,6 +19,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using Clock = std::chrono::steady_clock;
 
+constexpr std::uint64_t kPause = 1000;  // [us] between datagrams, within the rates that a server permits
 const net::Address kClient = net::Address::parse("192.0.2.1:4000").value();
 
 seal::Key key() { return seal::Key::parse("tactus key 1\nname lab\nsecret " + std::string(64, '7') + "\n", "").value(); }
@@ -62,7 +63,7 @@ void open_datagram(benchmark::State& state) {
     state.PauseTiming();
     const auto sealed = pair.client.seal(plain).value();
     state.ResumeTiming();
-    if (!pair.server.open(pair.now, kClient, sealed)) return state.SkipWithError("not opened");
+    if (!pair.server.open(pair.now += kPause, kClient, sealed)) return state.SkipWithError("not opened");
   }
 }
 BENCHMARK(open_datagram)->Arg(30)->Arg(1200);
@@ -73,7 +74,7 @@ void seal_and_open(benchmark::State& state) {
   pair.shake();
   const Bytes plain(static_cast<std::size_t>(state.range(0)), 7);
   for (auto _ : state)
-    if (!pair.server.open(pair.now, kClient, pair.client.seal(plain).value())) return state.SkipWithError("not opened");
+    if (!pair.server.open(pair.now += kPause, kClient, pair.client.seal(plain).value())) return state.SkipWithError("not opened");
 }
 BENCHMARK(seal_and_open)->Arg(30)->Arg(1200);
 
@@ -99,7 +100,7 @@ void cookie(benchmark::State& state) {
   const auto said = pair.client.poll_datagram().value();
   const Bytes hello(said.begin(), said.end());
   for (auto _ : state) {
-    static_cast<void>(pair.server.open(pair.now, kClient, hello));
+    static_cast<void>(pair.server.open(pair.now += kPause, kClient, hello));
     if (!pair.server.poll_datagram()) return state.SkipWithError("no answer");
   }
 }
@@ -112,9 +113,35 @@ void forgery(benchmark::State& state) {
   const auto sealed = pair.client.seal(Bytes(30, 7)).value();
   Bytes forged(sealed.begin(), sealed.end());
   forged.back() ^= 1u;
-  for (auto _ : state) benchmark::DoNotOptimize(pair.server.open(pair.now, kClient, forged));
+  for (auto _ : state) benchmark::DoNotOptimize(pair.server.open(pair.now += kPause, kClient, forged));
 }
 BENCHMARK(forgery);
+
+/// The same beyond the rate of its sender, a client.
+void flood(benchmark::State& state) {
+  Pair pair;
+  pair.shake();
+  const auto sealed = pair.client.seal(Bytes(30, 7)).value();
+  const Bytes again(sealed.begin(), sealed.end());
+  for (int i = 0; i < 10'000; ++i) static_cast<void>(pair.server.open(pair.now, kClient, again));
+  const std::uint64_t before = pair.server.counters().limited;
+  for (auto _ : state) benchmark::DoNotOptimize(pair.server.open(pair.now, kClient, again));
+  if (pair.server.counters().limited - before != static_cast<std::uint64_t>(state.iterations())) state.SkipWithError("handled");
+}
+BENCHMARK(flood);
+
+/// And of hosts without a client.
+void strangers_flood(benchmark::State& state) {
+  Pair pair;
+  pair.shake();
+  std::vector<net::Address> hosts;
+  for (int i = 0; i < 200; ++i) hosts.push_back(net::Address::parse("198.51.100." + std::to_string(i) + ":4000").value());
+  const Bytes hello(150, 22);
+  std::size_t next = 0;
+  for (int i = 0; i < 20'000; ++i) static_cast<void>(pair.server.open(pair.now, hosts[next++ % 200], hello));
+  for (auto _ : state) benchmark::DoNotOptimize(pair.server.open(pair.now, hosts[next++ % 200], hello));
+}
+BENCHMARK(strangers_flood);
 
 }  // namespace
 }  // namespace tactus

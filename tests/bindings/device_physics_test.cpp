@@ -50,6 +50,8 @@ struct Pyramid {
     out.gravity[2] = -9.81;
     out.coupling = 300;
     out.friction = 0.5;
+    out.method = TACTUS_METHOD_VELOCITY_VERLET;
+    out.sub_steps = 40;
     return out;
   }
   ElasticPhysics of_library() const {
@@ -62,7 +64,9 @@ struct Pyramid {
                                 .stiffness_damping = 0.002,
                                 .gravity = {0, 0, -9.81},
                                 .coupling = 300,
-                                .friction = 0.5},
+                                .friction = 0.5,
+                                .method = ElasticBody::Method::velocity_verlet,
+                                .sub_steps = 40},
                        .inner = {{inner[0], inner[1], inner[2]}}};
     for (std::size_t i = 0; i < tets.size(); i += 4) out.body.tets.push_back({tets[i], tets[i + 1], tets[i + 2], tets[i + 3]});
     return out;
@@ -157,6 +161,9 @@ TEST(CDevicePhysics, RefusesAtOnceWhatItCannotRead) {
   refuses("R-API-12", [](tactus_elastic_physics& b) { b.inner = nullptr; });
   refuses("R-API-12", [](tactus_elastic_physics& b) { b.fixed = nullptr; });
   refuses("R-ELA-2", [](tactus_elastic_physics& b) { b.material_count = 256; });
+  refuses("R-ELA-1", [](tactus_elastic_physics& b) { b.method = 0; });
+  refuses("R-ELA-1", [](tactus_elastic_physics& b) { b.method = 4; });
+  refuses("R-ELA-5", [](tactus_elastic_physics& b) { b.sub_steps = 256; });
   for (std::size_t tactus_elastic_physics::*count :
        {&tactus_elastic_physics::tet_count, &tactus_elastic_physics::inner_count, &tactus_elastic_physics::fixed_count})
     refuses("R-ELA-3", [count](tactus_elastic_physics& b) { b.*count = ~std::size_t{0} / 2; });
@@ -174,6 +181,7 @@ TEST(CDevicePhysics, BuildingRefusesWhatIsWrong) {
   };
   EXPECT_EQ(refusal_of([](Pyramid&, tactus_elastic_physics& b) { b.coupling = 0; }), "R-ELA-2");
   EXPECT_EQ(refusal_of([](Pyramid& p, tactus_elastic_physics&) { p.materials[0] = -1; }), "R-ELA-2");
+  EXPECT_EQ(refusal_of([](Pyramid&, tactus_elastic_physics& b) { b.sub_steps = 0; }), "R-ELA-5");
   EXPECT_EQ(refusal_of([](Pyramid& p, tactus_elastic_physics&) { std::swap(p.tets[0], p.tets[1]); }), "R-ELA-4");
   EXPECT_EQ(refusal_of([](Pyramid& p, tactus_elastic_physics&) { p.inner[0] = NAN; }), "R-API-1");
 

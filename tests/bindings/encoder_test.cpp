@@ -64,6 +64,40 @@ std::vector<std::uint8_t> written(const Scene& scene) {
   return out;
 }
 
+/// What is not named is not looked at, and a program that knows only the first version is not asked.
+TEST(CEncoder, WhatMovedMayBeNamed) {
+  const Scene scene = make_scene();
+  tactus_sender* raw = nullptr;
+  ASSERT_EQ(tactus_sender_create(scene.get(), nullptr, &raw, nullptr), TACTUS_OK);
+  const Sender sender(raw);
+  std::array<tactus_rigid_sample, 2> objects{};
+  for (tactus_rigid_sample& object : objects) object.pose.rotation[0] = 1;
+  objects[1].pose.position[2] = 0.05;
+  auto truth = filled<tactus_truth_init, tactus_truth>();
+  truth.objects = objects.data();
+  truth.object_count = objects.size();
+  const auto packets = [&](std::int64_t tick) {
+    std::size_t count = 0;
+    EXPECT_EQ(tactus_sender_encode(sender.get(), tick, &truth, &count, nullptr), TACTUS_OK);
+    return count;
+  };
+  const std::uint32_t cube = 1;
+  EXPECT_EQ(packets(0), 0u);
+  objects[1].pose.position[0] = 0.1;
+  truth.moved = &cube;
+  EXPECT_EQ(packets(1), 0u) << "it is not named";
+  truth.moved_count = 1;
+  EXPECT_EQ(packets(2), 1u);
+  objects[1].pose.position[0] = 0.2;
+  truth.size = offsetof(tactus_truth, moved);
+  truth.moved_count = 0;
+  EXPECT_EQ(packets(3), 1u) << "as all are compared";
+  truth = filled<tactus_truth_init, tactus_truth>();
+  truth.moved_count = 1;
+  std::size_t count = 0;
+  EXPECT_REFUSED("R-API-12", tactus_sender_encode, sender.get(), 4, &truth, &count);
+}
+
 TEST(CEncoder, ClustersAreThoseOfTheLibrary) {
   const Hinge hinge;
   auto coding = filled<tactus_deformable_options_init, tactus_deformable_options>();

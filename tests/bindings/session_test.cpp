@@ -11,29 +11,53 @@ using Server = std::unique_ptr<tactus_server, Destroy<tactus_server_destroy>>;
 using Client = std::unique_ptr<tactus_client, Destroy<tactus_client_destroy>>;
 
 struct Ends {
-  Scene scene = make_scene();
+  Scene scene;
   Server server;
   Client client;
   std::vector<std::uint32_t> events;  // of the client
 
-  Ends() {
+  explicit Ends(const tactus_scene_options* of = nullptr, std::int32_t role = TACTUS_ROLE_PARTICIPANT, std::uint32_t seat = 0)
+      : scene(make_scene(false, of)) {
     tactus_server* s = nullptr;
-    tactus_client* c = nullptr;
     EXPECT_EQ(tactus_server_create(scene.get(), nullptr, 1, 0, &s, nullptr), TACTUS_OK);
-    auto options = filled<tactus_client_options_init, tactus_client_options>();
-    options.role = TACTUS_ROLE_PARTICIPANT;
-    EXPECT_EQ(tactus_client_create(&options, &c, nullptr), TACTUS_OK);
     server.reset(s);
+    enter(role, seat, 0);
+  }
+  /// Another client takes the place of the one before.
+  void enter(std::int32_t role, std::uint32_t seat, std::uint64_t token) {
+    auto options = filled<tactus_client_options_init, tactus_client_options>();
+    options.role = role;
+    options.seat = seat;
+    options.token = token;
+    tactus_client* c = nullptr;
+    EXPECT_EQ(tactus_client_create(&options, &c, nullptr), TACTUS_OK);
     client.reset(c);
   }
-  void exchange(std::uint64_t now) {
+  tactus_session_status status(bool of_client) const {
+    auto out = sized<tactus_session_status>();
+    const auto said =
+        of_client ? tactus_client_status(client.get(), &out, nullptr) : tactus_server_status(server.get(), 0, &out, nullptr);
+    EXPECT_EQ(said, TACTUS_OK);
+    return out;
+  }
+  /// Ticks of 1 ms, without a device.
+  void run(Truth& truth, std::int64_t from, std::int64_t to, std::uint64_t peer = 7) {
+    for (std::int64_t tick = from; tick < to; ++tick) {
+      const auto now = static_cast<std::uint64_t>(1000 * tick);
+      EXPECT_EQ(tactus_server_handle_timeout(server.get(), now, nullptr), TACTUS_OK);
+      EXPECT_EQ(tactus_client_handle_timeout(client.get(), now, nullptr), TACTUS_OK);
+      EXPECT_EQ(tactus_server_submit(server.get(), now, tick, truth.at(tick), nullptr), TACTUS_OK);
+      exchange(now, peer);
+    }
+  }
+  void exchange(std::uint64_t now, std::uint64_t from = 7) {
     std::uint8_t bytes[TACTUS_DATAGRAM_BYTES];
     std::size_t size = 0;
     std::uint64_t peer = 0;
     while (tactus_client_poll_datagram(client.get(), now, bytes, sizeof bytes, &size, nullptr) == TACTUS_OK)
-      EXPECT_EQ(tactus_server_handle_datagram(server.get(), now, 7, bytes, size, nullptr), TACTUS_OK);
+      EXPECT_EQ(tactus_server_handle_datagram(server.get(), now, from, bytes, size, nullptr), TACTUS_OK);
     while (tactus_server_poll_datagram(server.get(), now, &peer, bytes, sizeof bytes, &size, nullptr) == TACTUS_OK) {
-      EXPECT_EQ(peer, 7u);
+      if (peer != from) continue;  // where a client was before
       EXPECT_EQ(tactus_client_handle_datagram(client.get(), now, bytes, size, nullptr), TACTUS_OK);
     }
     auto event = sized<tactus_event>();
@@ -85,6 +109,74 @@ TEST(CSession, BringsSceneStatesAndDevice) {
   EXPECT_LE(share, 1);
 }
 
+TEST(CSession, TellsSeatsAndLetsClientsComeBack) {
+  Ends ends(nullptr, TACTUS_ROLE_PARTICIPANT, 2);
+  Truth truth;
+  ASSERT_EQ(tactus_client_open(ends.client.get(), 0, 2, nullptr), TACTUS_OK);
+  ends.run(truth, 0, 300);
+  EXPECT_EQ(ends.status(false).wanted_seat, 2u);
+  EXPECT_EQ(ends.status(true).seat, 0u);
+  ASSERT_EQ(tactus_server_seat(ends.server.get(), 0, 2, nullptr), TACTUS_OK);
+  ends.run(truth, 300, 600);
+  EXPECT_EQ(ends.status(true).seat, 2u);
+  const std::uint64_t token = ends.status(true).token;
+  EXPECT_NE(token, 0u);
+  ends.enter(TACTUS_ROLE_PARTICIPANT, 0, token);  // the program has crashed, and begins anew at another address
+  ASSERT_EQ(tactus_client_open(ends.client.get(), 600'000, 3, nullptr), TACTUS_OK);
+  ends.run(truth, 600, 1200, 8);
+  EXPECT_EQ(ends.status(true).state, std::uint32_t{TACTUS_SESSION_LIVE});
+  EXPECT_EQ(ends.status(false).peer, 8u);
+  EXPECT_EQ(ends.status(false).client, 0u);
+}
+
+TEST(CSession, TellsOfWhatIsNear) {
+  auto options = filled<tactus_scene_options_init, tactus_scene_options>();
+  options.interest_full = 0.5;
+  options.interest_reach = 2;
+  Ends ends(&options, TACTUS_ROLE_OBSERVER);
+  auto info = sized<tactus_scene_info>();
+  ASSERT_EQ(tactus_scene_get(ends.scene.get(), &info, nullptr), TACTUS_OK);
+  EXPECT_EQ(info.interest_reach, 2);
+  Truth truth;
+  const double far[] = {5, 0, 0}, between[] = {0.8, 0, 0}, near_by[] = {0.2, 0, 0};
+  ASSERT_EQ(tactus_client_look_from(ends.client.get(), 0, far, nullptr), TACTUS_OK);
+  ASSERT_EQ(tactus_client_open(ends.client.get(), 0, 2, nullptr), TACTUS_OK);
+  ends.run(truth, 0, 500);
+  const auto level = [&](std::int64_t tick) {
+    std::uint8_t out = 99;
+    EXPECT_EQ(tactus_receiver_levels(tactus_client_receiver(ends.client.get()), tick, 1, 1, &out, nullptr), TACTUS_OK);
+    return int{out};
+  };
+  EXPECT_EQ(level(499), TACTUS_OUT_OF_INTEREST);
+  ASSERT_EQ(tactus_client_look_from(ends.client.get(), 500'000, between, nullptr), TACTUS_OK);
+  ends.run(truth, 500, 1000);
+  EXPECT_EQ(level(999), 1);
+  ASSERT_EQ(tactus_client_look_from(ends.client.get(), 1'000'000, near_by, nullptr), TACTUS_OK);
+  ends.run(truth, 1000, 1500);
+  EXPECT_EQ(level(1499), 0);
+  EXPECT_REFUSED("R-API-12", tactus_client_look_from, ends.client.get(), 1'500'000, nullptr);
+  EXPECT_REFUSED("R-API-12", tactus_receiver_levels, tactus_client_receiver(ends.client.get()), 1, 1, 2, nullptr);
+
+  const Sender sender = make_sender(ends.scene);
+  ASSERT_EQ(tactus_sender_look_from(sender.get(), far, 1, nullptr), TACTUS_OK);
+  std::size_t packets = 99;
+  ASSERT_EQ(tactus_sender_encode(sender.get(), 0, truth.at(0), &packets, nullptr), TACTUS_OK);
+  EXPECT_EQ(packets, 0u);
+  ASSERT_EQ(tactus_sender_look_from(sender.get(), near_by, 1, nullptr), TACTUS_OK);
+  ASSERT_EQ(tactus_sender_encode(sender.get(), 1, truth.at(1), &packets, nullptr), TACTUS_OK);
+  EXPECT_EQ(packets, 1u);
+  EXPECT_REFUSED("R-API-12", tactus_sender_look_from, sender.get(), nullptr, 1);
+  options.interest_reach = 0.1;
+  tactus_scene_builder* raw = nullptr;
+  ASSERT_EQ(tactus_scene_builder_create(&options, &raw, nullptr), TACTUS_OK);
+  const Builder builder(raw);
+  ASSERT_EQ(tactus_scene_builder_rigid(raw, "cube", nullptr, TACTUS_DOF_ALL, nullptr), TACTUS_OK);
+  tactus_scene* made = nullptr;
+  tactus_error error{};
+  EXPECT_EQ(tactus_scene_builder_build(raw, &made, &error), TACTUS_INVALID_ARGUMENT);
+  EXPECT_STREQ(error.rule, "R-API-4");
+}
+
 TEST(CSession, Refuses) {
   Ends ends;
   Truth truth;
@@ -103,6 +195,8 @@ TEST(CSession, Refuses) {
   EXPECT_REFUSED("R-API-12", tactus_server_handle_datagram, server, 0, 0, bytes, 30);
   EXPECT_REFUSED("R-API-12", tactus_server_handle_datagram, server, 0, 7, nullptr, 30);
   EXPECT_REFUSED("R-API-12", tactus_server_poll_datagram, server, 0, &peer, bytes, sizeof bytes - 1, &size);
+  EXPECT_REFUSED("R-API-12", tactus_server_seat, server, 8, 1);
+  EXPECT_REFUSED("R-API-12", tactus_server_seat, server, 0, 256);
   EXPECT_REFUSED("R-API-12", tactus_server_close_client, server, 8, TACTUS_LEAVE_BYE);
   EXPECT_REFUSED("R-API-12", tactus_server_close_client, server, 0, 99);
   EXPECT_REFUSED("R-API-12", tactus_server_submit, server, 0, 0, nullptr);

@@ -181,9 +181,12 @@ TEST_F(CSizes, OfADecoder) {
            {"limits", 40, Direction::option, initialised<tactus_limits_init, tactus_limits>(), taking<tactus_limits>(parse)},
            {"receiver_options", 40, Direction::option, initialised<tactus_receiver_options_init, tactus_receiver_options>(),
             taking<tactus_receiver_options>(receive)},
-           {"scene_info", 48, Direction::answer, {}, taking<tactus_scene_info>([&](auto*i, auto*e) {
-              return tactus_scene_get(of, i, e);
-            })},
+           {"scene_info",
+            48,
+            Direction::answer,
+            {},
+            taking<tactus_scene_info>([&](auto*i, auto*e) { return tactus_scene_get(of, i, e); }),
+            {64}},
            {"rigid_info", 72, Direction::answer, {}, taking<tactus_rigid_info>([&](auto*i, auto*e) {
               return tactus_scene_get_rigid(of, 1, i, e);
             })},
@@ -239,17 +242,30 @@ TEST_F(CSizes, OfAnEncoder) {
     return tactus_sender_encode(idle.get(), next++, given, &packets, error);
   };
   for (const SizedCall& call : std::vector<SizedCall>{
-           {"scene_options", 88, Direction::option, initialised<tactus_scene_options_init, tactus_scene_options>(),
-            taking<tactus_scene_options>(build)},
+           {"scene_options",
+            88,
+            Direction::option,
+            initialised<tactus_scene_options_init, tactus_scene_options>(),
+            taking<tactus_scene_options>(build),
+            {104}},
            {"deformable_options", 112, Direction::option,
             initialised<tactus_deformable_options_init, tactus_deformable_options>(), taking<tactus_deformable_options>(deform)},
            {"driven_physics", 72, Direction::option, initialised<tactus_driven_physics_init, tactus_driven_physics>(),
             taking<tactus_driven_physics>(made_of(tactus_scene_builder_driven))},
-           {"elastic_physics", 128, Direction::option, initialised<tactus_elastic_physics_init, tactus_elastic_physics>(),
-            taking<tactus_elastic_physics>(made_of(tactus_scene_builder_elastic))},
+           {"elastic_physics",
+            128,
+            Direction::option,
+            initialised<tactus_elastic_physics_init, tactus_elastic_physics>(),
+            taking<tactus_elastic_physics>(made_of(tactus_scene_builder_elastic)),
+            {136}},
            {"sender_options", 72, Direction::option, initialised<tactus_sender_options_init, tactus_sender_options>(),
             taking<tactus_sender_options>(send)},
-           {"truth", 72, Direction::option, initialised<tactus_truth_init, tactus_truth>(), taking<tactus_truth>(encode_nothing)},
+           {"truth",
+            72,
+            Direction::option,
+            initialised<tactus_truth_init, tactus_truth>(),
+            taking<tactus_truth>(encode_nothing),
+            {88}},
            {"packet_info", 64, Direction::answer, {}, taking<tactus_packet_info>(tell)}})
     check_sizes(call);
 }
@@ -275,15 +291,26 @@ TEST_F(CSizes, OfASession) {
     EXPECT_EQ(tactus_client_close(client, nullptr), TACTUS_OK);
     return tactus_client_poll_event(client, event, error);
   };
-  for (const SizedCall& call : std::vector<SizedCall>{
-           {"server_options", 48, Direction::option, initialised<tactus_server_options_init, tactus_server_options>(),
-            taking<tactus_server_options>(serve)},
-           {"client_options", 64, Direction::option, initialised<tactus_client_options_init, tactus_client_options>(),
-            taking<tactus_client_options>(join)},
-           {"event", 24, Direction::answer, {}, taking<tactus_event>(leave)},
-           {"session_status", 232, Direction::answer, {}, taking<tactus_session_status>([&](auto*s, auto*e) {
-              return tactus_client_status(client, s, e);
-            })}})
+  for (const SizedCall& call :
+       std::vector<SizedCall>{{"server_options",
+                               48,
+                               Direction::option,
+                               initialised<tactus_server_options_init, tactus_server_options>(),
+                               taking<tactus_server_options>(serve),
+                               {56}},
+                              {"client_options",
+                               64,
+                               Direction::option,
+                               initialised<tactus_client_options_init, tactus_client_options>(),
+                               taking<tactus_client_options>(join),
+                               {80}},
+                              {"event", 24, Direction::answer, {}, taking<tactus_event>(leave)},
+                              {"session_status",
+                               232,
+                               Direction::answer,
+                               {},
+                               taking<tactus_session_status>([&](auto*s, auto*e) { return tactus_client_status(client, s, e); }),
+                               {256}}})
     check_sizes(call);
   tactus_client_destroy(client);
 }

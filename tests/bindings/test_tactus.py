@@ -62,6 +62,20 @@ def test_sender_and_receiver_agree():
         assert receiver.scene.objects[0].name == "cube"
 
 
+def test_what_moved_may_be_named():
+    with tactus.build_scene([tactus.RigidObject("cube"), tactus.RigidObject("ball")]) as scene:
+        compares, told, misled = (tactus.Sender(scene) for _ in range(3))
+        rows = np.zeros((2, 13))
+        rows[:, 3] = 1
+        for tick in range(500):
+            rows[0] = swing(tick)[0]
+            packets = compares.encode(tick, rows)
+            assert [p.data for p in told.encode(tick, rows, moved=[0])] == [p.data for p in packets]
+            assert not misled.encode(tick, rows, moved=()) or tick == 0
+        with pytest.raises(ValueError):
+            told.encode(500, rows, moved=[[0]])
+
+
 def test_a_mesh_keeps_its_bound():
     vertices = np.array([[0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0], [0, 0.1, 0]])
     triangles = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
@@ -226,10 +240,14 @@ def test_what_a_device_drives_and_deforms():
     assert len(set(plain)) == 4 and len(plain[0]) < len(plain[1]) < len(plain[2]) < len(plain[3])
     assert tactus.Scene(plain[3]).to_bytes() == plain[3]
     for change, said in (({"material": [0, 1]}, "2 numbers of materials for 4"), ({"tets": [[0, 1, 2, 0.5]]}, "tets are whole"),
-                         ({"fixed": [1.5]}, "fixed are whole")):
+                         ({"fixed": [1.5]}, "fixed are whole"), ({"method": "euler"}, "method 'euler' is none of")):
         with pytest.raises(ValueError, match=said):
             tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=dataclasses.replace(body, **change))])
-    for change, rule in (({"coupling": 0}, "R-ELA-2"), ({"fixed": [5]}, "R-ELA-3"), ({"tets": [[0, 2, 1, 4], *body.tets[1:]]}, "R-ELA-4")):
+    explicit = dataclasses.replace(body, method="velocity-verlet", sub_steps=40)
+    told = tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=explicit)]).to_bytes()
+    assert len(told) == len(tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=body)]).to_bytes()) + 1
+    assert tactus.Scene(told).to_bytes() == told
+    for change, rule in (({"method": "velocity-verlet"}, "R-ELA-5"), ({"coupling": 0}, "R-ELA-2"), ({"fixed": [5]}, "R-ELA-3"), ({"tets": [[0, 2, 1, 4], *body.tets[1:]]}, "R-ELA-4")):
         with pytest.raises(tactus.Error) as refused:
             tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=dataclasses.replace(body, **change))])
         assert refused.value.rule == rule

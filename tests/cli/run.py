@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run the command-line cases beside this file against a `tactus` program.
 
-  run.py [--without PARTS] PROGRAM [CASE...]   run all cases or those named; PARTS that the program lacks: fem,observe,seal,study,surface,view
+  run.py [--without PARTS] PROGRAM [CASE...]   run all cases or those named; PARTS that the program lacks: fem,monitor,observe,seal,study,surface,view
                                                ends with 77 when all of them are skipped
   run.py --self-test                           check that each kind of difference is found
 

@@ -57,7 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     packet.tick = state.tick;
     packet.number = number += static_cast<std::uint32_t>(v[0]) >> 20 & 3;  // packets in between are missing
     packet.updates = {&update, 1};
-    replica.apply(packet, {&state, 1}, now);
+    replica.apply(packet, RigidStates{packet.tick, PagedArray<RigidState>(1, 1, [&](std::size_t) { return state; })}, now);
     for (const std::int64_t later : {-5000, -250, -30, -1, 0, 1, 10, 99, 5000}) {
       const RigidPose shown = replica.pose(0, now + later);
       double square = 0;

@@ -57,6 +57,10 @@ DeformableObject object(ByteReader& in) {
   body.stiffness_damping = constant(in, 0.004);
   body.coupling = constant(in, 5);
   body.friction = in.u8() % 2 == 0 ? 0 : constant(in, 0.5);
+  if (const unsigned kind = in.u8() % 8; kind < 4) {
+    body.method = kind < 2 ? ElasticBody::Method::velocity_verlet : ElasticBody::Method::tr_bdf2;
+    if (kind < 2) body.sub_steps = in.u8() % 32;
+  }
   if (in.u8() % 4 == 0) body.gravity = {constant(in, 1), constant(in, -1), constant(in, -9.81)};
   return out;
 }

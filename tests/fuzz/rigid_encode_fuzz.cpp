@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any bytes as motions, contacts and settings: what the sender takes stays inside its bounds at the receiver, what it refuses changes
-/// nothing.
+/// Any bytes as motions, contacts, settings and places that a client looks from: what the sender takes stays inside its bounds at the
+/// receiver, what it refuses changes nothing.
 #include <cmath>
 #include <vector>
 
@@ -13,6 +13,14 @@
 namespace {
 
 using namespace tactus;
+
+/// Those of a level of detail.
+RigidTriggers widened(RigidTriggers t, std::uint8_t lod) {
+  for (double* bound : {&t.visual_position, &t.visual_rotation, &t.weber_fraction, &t.perceptual_share, &t.cone_angle,
+                        &t.fixed_position, &t.fixed_rotation})
+    *bound = std::ldexp(*bound, lod);
+  return t;
+}
 
 void check_bounds(const RigidTriggers& t, Receiver& receiver, std::int64_t tick, const RigidSample& truth,
                   std::span<const Contact> contacts) {
@@ -39,9 +47,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   spec.is_eased = choice >= 128;
   if ((choice & 96) == 96) spec.driven = {{{1075200, 116053, {286331, 286331, 286331}, 128, 1049}}};
   spec.objects.push_back({"o", Dof::all, {}});
+  const std::uint8_t rule = in.u8();
+  if (rule >= 128) spec.interest = {1 << 20, 1 << 24};  // 0.25 m and 4 m
   const SharedScene scene = Scene::create(std::move(spec)).value();
   SenderOptions options;
-  options.triggers.haptic = static_cast<HapticRule>(in.u8() % 5);
+  options.triggers.haptic = static_cast<HapticRule>(rule % 5);
   options.triggers.reduction = static_cast<Reduction>(in.u8() % 3);
   options.triggers.weber_fraction = 0.001 * in.u8();
   options.triggers.perceptual_share = 10 * options.triggers.weber_fraction;
@@ -63,6 +73,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (scene->driven && !contacts.empty())
       if (const auto device = to_grid({{contacts[0].device, {}}, {}, {}}, tick, scene->grid))
         path->add(static_cast<std::uint64_t>(tick) + 1, *device);
+    if (rule >= 192) {  // below that the client never says
+      const Vec3 place{0.1 * in.u8(), 0, 0};
+      sender->look_from({&place, in.u8() < 250 ? 1u : 0u});
+    }
     const std::uint64_t before = sender->state_hash(0);
     const auto packets = sender->encode(tick, {.objects = {&next, 1}, .contacts = contacts});
     if (!packets) {
@@ -72,7 +86,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     sample = next;
     for (const Packet& packet : *packets) require(receiver.push(packet.bytes).has_value());
     require(receiver.state_hash(0) == sender->state_hash(0));
-    check_bounds(options.triggers, receiver, tick, sample, contacts);
+    const std::uint8_t lod = receiver.replica().lod(0, tick);
+    require(scene->interest.has_value() || lod == 0);
+    if (lod != kOutOfInterest) check_bounds(widened(options.triggers, lod), receiver, tick, sample, contacts);
   }
   return 0;
 }

@@ -25,6 +25,7 @@ SharedScene scene(std::uint8_t choice) {
     spec.driven->bodies[0] = {1, 0, {1, 1, 1}, 0, 0};
   }
   if (choice & 8) spec.grid = {30, 18, 28, 16};
+  if ((choice & 12) == 12) spec.interest = {1, 1};
   return Scene::create(std::move(spec)).value();
 }
 
@@ -40,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (packet.number < newest && !packet.restarts) return;  // overtaken: its states are not the current ones
     newest = packet.number;
     for (const RigidUpdate& update : packet.updates) {
-      const RigidState& state = receiver.objects()[update.object];
+      const RigidState& state = receiver.object(update.object);
       std::int64_t square = 0;
       for (const std::int32_t c : state.rotation) square += static_cast<std::int64_t>(c) * c;
       require(state.tick == packet.tick && std::llabs(square - (std::int64_t{1} << 60)) <= std::int64_t{1} << 41);

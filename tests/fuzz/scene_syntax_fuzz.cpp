@@ -21,7 +21,6 @@ void check_ends(const SharedScene& scene) {
     require(state_bytes(*scene) > kLimits.state_bytes && std::string_view(receiver.error().rule) == "R-STR-18");
     return;
   }
-  require(receiver->objects().size() == scene->objects.size());
   for (std::size_t i = 0; i < scene->deformables.size(); ++i)
     require(receiver->displacements(i).size() == scene->deformables[i].rest.size());
   const auto sender = Sender::create(scene);

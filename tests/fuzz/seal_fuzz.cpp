@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Both ends of the seal among hostile datagrams: the input is a row of (operation, size, its bytes). Who has not proven an address gets
 /// no more than three times what it said, a stranger's datagram never comes out as one of the session, and no noise ends an association.
-/// The rest of the input is a key file. (GnuTLS draws its random numbers: the same input takes the same path, but for their values.)
+/// The input is a key file and a key list, too. (GnuTLS draws its random numbers: the same input takes the same path, but for their values.)
 #include <string_view>
 
 #include "tests/fuzz/seal_world.h"
@@ -28,6 +28,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     else world.now += 1000u * datagram.size();
     require(world.client.handle_timeout(world.now) || !world.client.is_open());
   }
-  static_cast<void>(seal::Key::parse({reinterpret_cast<const char*>(data), size}, "fuzz"));
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  static_cast<void>(seal::Key::parse(text, "fuzz"));
+  if (const auto list = seal::KeyList::parse(text, "fuzz")) {
+    require(list->users().size() <= seal::KeyList::kMostUsers);
+    for (const seal::KeyList::User& user : list->users())
+      require(seal::Key::is_name(user.name()) && list->find(user.name()) == &user);
+  }
   return 0;
 }

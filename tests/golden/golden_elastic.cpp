@@ -43,7 +43,7 @@ std::vector<ElasticBody::Tet> tets() {
 }
 
 /// The upper side alone can be touched. All other vertices are on the surface, too, as far as the codec knows.
-SharedScene scene_of(double friction, const Vec3& gravity) {
+SharedScene scene_of(double friction, const Vec3& gravity, ElasticBody::Method method, std::uint8_t sub_steps) {
   TriMesh mesh;
   for (std::uint32_t k = 0; k < kLayers; ++k)
     for (std::uint32_t j = 0; j < kSide; ++j)
@@ -66,6 +66,8 @@ SharedScene scene_of(double friction, const Vec3& gravity) {
   body.gravity = gravity;
   body.coupling = 6;
   body.friction = friction;
+  body.method = method;
+  body.sub_steps = sub_steps;
   return SceneBuilder()
       .deformable("block", std::move(mesh), {.frame_period = 8})
       .elastic(std::move(physics))
@@ -81,8 +83,11 @@ Vec3 place(std::int64_t tick) {
   return {kCell * (0.5 + 3 * along), kCell * (0.5 + 3 * along * along), kCell * (kLayers - 1 - depth)};
 }
 
-bool run(const char* name, double friction, const Vec3& gravity) {
-  const SharedScene scene = scene_of(friction, gravity);
+using Method = ElasticBody::Method;
+
+bool run(const char* name, double friction, const Vec3& gravity, Method method = Method::backward_euler,
+         std::uint8_t sub_steps = 1) {
+  const SharedScene scene = scene_of(friction, gravity, method, sub_steps);
   DevicePath path(device_scene(*scene).value());
   path.shift(0, 0);
   DrivenShape shape(*scene, scene->deformables[0], path);
@@ -103,6 +108,10 @@ bool run(const char* name, double friction, const Vec3& gravity) {
 
 }  // namespace
 
-bool run_bodies() { return run("elastic", 0, {}) && run("elastic-rough", 0.4, {1, 0, -9.81}); }
+bool run_bodies() {
+  return run("elastic", 0, {}) && run("elastic-rough", 0.4, {1, 0, -9.81}) &&
+         run("elastic-tr-bdf2", 0.4, {1, 0, -9.81}, Method::tr_bdf2) &&
+         run("elastic-verlet", 0.4, {1, 0, -9.81}, Method::velocity_verlet, 40);
+}
 
 }  // namespace tactus::golden

@@ -9,7 +9,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "lab"))
 from common.arguments import Refusal  # noqa: E402
-from studies import delay, precision, precision_report, session, signals, stability, stability_figures  # noqa: E402
+from studies import delay, precision, precision_report, session, signals, stability, stability_figures, world, world_costs  # noqa: E402
 
 
 def numbers(force):
@@ -119,6 +119,85 @@ class Others(unittest.TestCase):
         found = stability_figures.of([{"study": "jury", "series": {"figure-4.16-a": {"rows": []},
                                                                    "figure-4.16-b": {"rows": []}}}])
         self.assertEqual([name for name, _, _ in found], ["jury-figure-4.16"])
+
+
+class World(unittest.TestCase):
+    REPORT = pathlib.Path(__file__).resolve().parents[2] / "reports/world"
+
+    def setUp(self):
+        if world_costs.numpy is None:
+            self.skipTest("needs NumPy")
+        from studies import world_model
+        self.numpy, self.model = world_costs.numpy, world_model
+
+    def test_unit_costs_are_those_that_were_measured(self):
+        with open(self.REPORT / "measured.csv", encoding="utf8", newline="") as file:
+            self.assertEqual(world_costs.fit(list(csv.DictReader(file))), world_costs.COSTS)
+        self.assertEqual(world_costs.read(self.REPORT / "costs.csv"), world_costs.COSTS)
+
+    def test_unit_costs_meet_what_was_measured(self):
+        costs, ratios = world_costs.COSTS, []
+        with open(self.REPORT / "measured.csv", encoding="utf8", newline="") as file:
+            for row in csv.DictReader(file):
+                if row["what"] == "physics" or row["reach_m"] == "0":  # without interest clients share nearly all
+                    continue
+                at = {key: float(cell) for key, cell in row.items() if key != "what"}
+                thousands = at["objects"] / 1000
+                packets = at["down_datagrams_per_tick"] - costs["idle_datagrams_per_s"] / 1000
+                of_client = costs["session_us"] + costs["look_us"] * at["moving"] + packets * (
+                    costs["packet_us"] + costs["packet_of_1000_us"] * thousands) + costs["tell_us"] * sum(
+                        at[f"moving_in_lod{level}"] for level in range(7))
+                of_truth = costs["truth_us"] + costs["truth_of_1000_us"] * thousands
+                ratios.append((at["clients"] * of_client + at["moving"] * of_truth) / (1e6 * at["tick_s"]))
+        self.assertEqual(len(ratios), len(world_costs.POINTS) - 1)
+        self.assertTrue(all(0.75 < ratio < 1.3 for ratio in ratios), ratios)
+
+    def test_levels_of_detail_and_their_hysteresis(self):
+        limits = world_costs.level_limits(2, 16)
+        self.assertEqual(list(limits), [2, 4, 8, 16, 16, 16, 16])
+        levels = lambda before, *distances: list(world_costs.levels_at(limits, self.numpy.array(distances), before))
+        self.assertEqual(levels(7, 1, 2, 2.1, 5, 16, 16.1), [0, 0, 1, 2, 3, 7])
+        self.assertEqual(levels(0, 2.29, 2.31, 4.59, 4.61), [0, 1, 1, 2])
+        self.assertEqual(levels(3, 18.3, 18.5, 7), [3, 7, 2])
+
+    def test_regions_share_the_cost_and_fill_the_world(self):
+        setting = self.model.Setting(servers=3, side=12)
+        places = self.numpy.array([[x + 0.5, x + 0.5] for x in range(12)])
+        weights = self.numpy.array([4.0, 4, 4] + [1] * 3 + [3] * 3 + [0] * 3)  # of 24
+        regions = self.model.Regions(setting, places, weights)
+        owner = regions.of(places)
+        self.assertEqual([weights[owner == server].sum() for server in range(3)], [8, 7, 9])
+        points = self.numpy.random.default_rng(1).uniform(0, 12, (1000, 2))
+        inside = [regions.distance(points, self.numpy.full(1000, server)) == 0 for server in range(3)]
+        self.assertTrue((self.numpy.sum(inside, axis=0) == 1).all())
+        self.assertTrue((self.numpy.argmax(inside, axis=0) == regions.of(points)).all())
+
+    def test_an_owner_changes_behind_the_margin(self):
+        regions = self.model.Regions(self.model.Setting(servers=2, side=10), self.numpy.array([[4.0, 1], [5, 1]]), self.numpy.ones(2))
+        self.assertEqual(list(regions.high[0]), [5, 10])
+        before = self.numpy.array([0, 0, 1, 1], self.numpy.int16)
+        places = self.numpy.array([[5.9, 3], [6.1, 3], [4.1, 3], [3.9, 3]])
+        self.assertEqual(list(regions.owners(places, before, 1)), [0, 1, 1, 0])
+
+    def test_what_a_user_holds_belongs_to_its_server(self):
+        made = self.model.World(self.model.Setting(objects=2, users=1, servers=2, side=10, seed=1), dict(world_costs.COSTS))
+        made.regions = self.model.Regions(made.setting, self.numpy.array([[4.0, 1], [5, 1]]), self.numpy.ones(2))
+        made.users, made.server = self.numpy.array([[4.5, 3.0]]), self.numpy.array([0], self.numpy.int16)
+        made.objects, made.owner = self.numpy.array([[6.5, 3.0], [8, 3]]), self.numpy.array([1, 1], self.numpy.int16)
+        made.holder[0] = 0
+        gone, objects = made._own(self.numpy.array([0]))
+        self.assertEqual((list(made.owner), gone.any(), objects), ([0, 1], False, 1))
+        made._own(self.numpy.array([], int))  # it rests: to the region again
+        self.assertEqual((list(made.owner), list(made.holder)), ([1, 1], [-1, -1]))
+
+    def test_updates_of_a_tick_share_a_datagram(self):
+        self.assertAlmostEqual(self.model.datagrams(1.0), 1, 2)
+        self.assertAlmostEqual(self.model.datagrams(1000.0), 632.1, 1)
+
+    def test_cells_have_means_and_spread(self):
+        self.assertEqual(world.spread([1.0, 1.0]), "1")
+        self.assertEqual(world.spread([1.0, 2.0, 3.0]), "2 (1 to 3)")
+        self.assertEqual([world_costs.digits(n) for n in (12345.6, 0.00012345, 0)], ["12300", "0.000123", "0"])
 
 
 if __name__ == "__main__":

@@ -36,6 +36,13 @@ if has tactus; then
     test -s "/usr/share/$completion"
   done
   test -s /usr/share/tactus/plans/deadband.toml
+  if [ -e /usr/lib/systemd/system/tactus@.service ]; then
+    step 'the service'
+    test -s /usr/lib/udev/rules.d/70-tactus.rules
+    if command -v systemd-sysusers >/dev/null; then id tactus; fi
+    if command -v systemd-analyze >/dev/null; then systemd-analyze verify --man=no 'tactus@push-1dof.service'; fi
+    tactus serve push-1dof --check
+  fi
 fi
 
 if has libtactus-dev; then

@@ -17,7 +17,7 @@ bool count_file(const Scene& scene, const Packets& packets, Counts& total) {
   const bool fits = scene.moving().empty() && scene.deformables.size() == 1;
   if (!fits || scene.deformables[0].profile != DeformableProfile::main) return false;
   const DeformableObject& object = scene.deformables[0];
-  MainReader reader(object);
+  MainReader reader(object, std::make_shared<const VertexHierarchy>(vertex_hierarchy(object)));
   const MainState initial = initial_main_state(object);
   MainState state = initial, next = initial;
   Counts counts = no_counts<MainModels>();

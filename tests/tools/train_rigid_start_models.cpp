@@ -55,5 +55,6 @@ int main(int argc, char** argv) {
   }
   for (std::size_t context = 0; context < 8; ++context) table.tree(indexed("PREDICTOR", {context}), 3);
   for (std::size_t of = 0; of < 3; ++of) table.magnitude(indexed("CONTACT", {of}));
+  table.tree("LOD", 7);
   return table.complete() ? 0 : 1;
 }

@@ -127,8 +127,7 @@ TEST(AcknowledgedBaselines, NoLossStopsRigidObjects) {
       for (std::uint32_t i = 0; i < kObjects; ++i) {
         const bool named = std::ranges::any_of(packet.updates, [i](const RigidUpdate& update) { return update.object == i; });
         if (!named && channel.loss > 0) continue;  // a lost packet may have named it
-        const RigidPose held =
-            named ? predictor.pose(receiver.objects()[i], packet.tick) : receiver.replica().pose(i, packet.tick);
+        const RigidPose held = named ? predictor.pose(receiver.object(i), packet.tick) : receiver.replica().pose(i, packet.tick);
         const Pose shown = to_pose(held, scene->grid.position);
         const Pose& pose = truly[i].pose;
         const bool seen = norm(shown.position - pose.position) <= RigidTriggers{}.visual_position &&
@@ -251,6 +250,44 @@ TEST(AcknowledgedBaselines, WhatIsNotAcknowledgedIsSentAgain) {
   EXPECT_EQ(object.until_next(1000), 1) << "the one before is due for longer";
 }
 
+/// Whether an object that is off by this share of its bound is named when another one is.   in   others  that move, too
+bool joins(double share, Baseline baseline, bool waits, std::size_t others = 0) {
+  SceneSpec spec = testing::spec_of(2 + others);
+  spec.baseline_span = 8;
+  SenderOptions options;
+  options.policy.baseline = baseline;
+  options.policy.key_interval = 0;
+  options.triggers.heartbeat = 0;
+  options.triggers.visual_position = 1e-3;
+  Sender sender = Sender::create(testing::shared(std::move(spec)), options).value();
+  std::vector<RigidSample> samples(2 + others);
+  std::int64_t tick = 0;
+  const auto encode = [&] { return testing::all(sender.encode(tick++, {samples})).size(); };
+  encode();
+  sender.set_link({.answer = 1000, .loss = 0, .waits = waits});
+  samples[1].pose.position.x = 1e-3 * share;
+  for (std::size_t i = 0; i < others; ++i) samples[2 + i].pose.position.x = 1e-3 * share;
+  EXPECT_EQ(encode(), 0u) << "alone it causes none";
+  samples[0].pose.position.x += 0.01;
+  EXPECT_EQ(encode(), 1u);
+  return sender.object(1).tick == tick - 1;
+}
+
+TEST(AcknowledgedBaselines, WhatIsNearItsBoundJoinsAPacketThatGoesAnyway) {
+  for (const Baseline baseline : {Baseline::acknowledged, Baseline::repaired}) {
+    EXPECT_TRUE(joins(0.6, baseline, false));
+    EXPECT_FALSE(joins(0.4, baseline, false));
+    EXPECT_TRUE(joins(0.2, baseline, true)) << "what waits takes along what moves";
+    EXPECT_FALSE(joins(0.1, baseline, true));
+    EXPECT_TRUE(joins(0.4, baseline, true, 11));
+    EXPECT_FALSE(joins(0.2, baseline, true, 11)) << "many objects are bits, too";
+    EXPECT_TRUE(joins(0.6, baseline, true, 23));
+    EXPECT_FALSE(joins(0.4, baseline, true, 23));
+  }
+  EXPECT_FALSE(joins(0.9, Baseline::previous, false));
+  EXPECT_FALSE(joins(0.9, Baseline::previous, true));
+}
+
 TEST(AcknowledgedBaselines, WithoutLossOnlyWhatShouldHaveBeenAnsweredIsSentAgain) {
   Jumping object({.answer = 55, .loss = 0.001});
   object.jump();
@@ -259,6 +296,14 @@ TEST(AcknowledgedBaselines, WithoutLossOnlyWhatShouldHaveBeenAnsweredIsSentAgain
   EXPECT_EQ(object.until_next(1000), 55);
   object.sender().set_link({});
   EXPECT_EQ(object.until_next(5000), std::nullopt) << "nothing is known of the way back";
+}
+
+TEST(AcknowledgedBaselines, WhatIsCopiedIsSentAgainOnlyWhenTheAnswerIsDue) {
+  Jumping object({.answer = 55, .loss = 0.1, .copies = true});
+  object.jump();
+  EXPECT_EQ(object.until_next(1), 1);
+  EXPECT_EQ(object.until_next(1000), 55);
+  EXPECT_EQ(object.until_next(1000), 55);
 }
 
 /// Two objects with the same motion, the second one a little slower: it never sends a packet of its own.

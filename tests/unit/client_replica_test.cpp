@@ -38,7 +38,7 @@ class Feeder {
     DecodedPacket packet;
     packet.tick = tick;
     packet.updates = {&named, 1};
-    replica_.apply(packet, {&state, 1}, now);
+    replica_.apply(packet, {tick, PagedArray<RigidState>(1, 1, [&](std::size_t) { return state; })}, now);
   }
   Pose shown(std::int64_t tick) const { return to_pose(replica_.pose(0, tick), scene_->grid.position); }
 
@@ -135,10 +135,10 @@ TEST(ClientReplica, AnObjectIsNotHeldUpByAnotherOfTheSamePacket) {
   packet.tick = 80;
   packet.updates = std::span(named).first(1);
   std::vector<RigidState> states{state(80), state(0)};
-  replica.apply(packet, states, 100);
+  replica.apply(packet, {80, PagedArray<RigidState>(2, 1, [&](std::size_t i) { return states[i]; })}, 100);
   packet.updates = named;
   states[1] = state(80);
-  replica.apply(packet, states, 90);
+  replica.apply(packet, {80, PagedArray<RigidState>(2, 1, [&](std::size_t i) { return states[i]; })}, 90);
   EXPECT_EQ(replica.pose(1, 95), predictor.pose(states[1], 95));
   EXPECT_EQ(replica.pose(0, 95), predictor.pose(states[0], 100)) << "this one was there at 100 already";
 }
@@ -195,7 +195,7 @@ class PlayoutReplica {
     packet.tick = arrival.tick;
     packet.restarts = arrival.restarts;
     packet.updates = {&named, 1};
-    replica_.apply(packet, {&state, 1}, now);
+    replica_.apply(packet, {arrival.tick, PagedArray<RigidState>(1, 1, [&](std::size_t) { return state; })}, now);
   }
   RigidPose shown(std::int64_t tick) const { return replica_.pose(0, tick); }
   RigidPose reckoned(std::int64_t from, std::int64_t tick) const { return RigidPredictor(*scene_).pose(along(from, true), tick); }
@@ -319,10 +319,10 @@ NumberedState update(std::int64_t tick, std::uint64_t number) {
 }
 
 TEST(Timelines, BeginWithTheInitialStates) {
-  std::vector<RigidObject> objects(2);
-  objects[1].initial.position = {1, 2, 3};
+  SceneSpec spec = testing::spec_of(2);
+  spec.objects[1].initial.position = {1, 2, 3};
   Timelines timelines(2);
-  timelines.reset(objects);
+  timelines.reset(*testing::shared(spec));
   for (const std::int64_t tick : {-5, 0, 1000}) {
     const auto [before, after] = timelines.around(1, tick);
     EXPECT_EQ(timelines[before].state.position, (std::array<std::int32_t, 3>{1, 2, 3}));
@@ -337,7 +337,7 @@ TEST(Timelines, OrderOfArrivalDoesNotMatter) {
   std::mt19937_64 random(1);
   for (int round = 0; round < 20; ++round) {
     Timelines timelines(1);
-    timelines.reset(std::vector<RigidObject>(1));
+    timelines.reset(*testing::scene_of(1));
     std::vector<NumberedState> shuffled(updates.begin() + 1, updates.end());
     std::shuffle(shuffled.begin(), shuffled.end(), random);
     for (const NumberedState& u : shuffled) timelines.add(0, u.number, u.state);
@@ -356,7 +356,7 @@ TEST(Timelines, OrderOfArrivalDoesNotMatter) {
 /// One moves in every tick, 99 are told of once: what is older than the time kept goes, but the last before it.
 TEST(Timelines, KeepATimeOfWhatMovesAndOneStateOfWhatRests) {
   Timelines timelines(100);
-  timelines.reset(std::vector<RigidObject>(100));
+  timelines.reset(*testing::scene_of(100));
   timelines.keep(400);
   std::uint64_t number = 0;
   for (std::uint32_t i = 1; i < 100; ++i)
@@ -375,7 +375,7 @@ TEST(Timelines, KeepATimeOfWhatMovesAndOneStateOfWhatRests) {
 TEST(Timelines, AreBounded) {
   constexpr std::uint32_t kObjects = 40;  // room for 40 + 5120 updates
   Timelines timelines(kObjects);
-  timelines.reset(std::vector<RigidObject>(kObjects));
+  timelines.reset(*testing::scene_of(kObjects));
   std::uint64_t number = 0;
   for (std::int64_t tick = 1; tick <= 1000; ++tick)
     for (std::uint32_t i = 0; i < kObjects; ++i) timelines.add(i, ++number, update(tick, 0).state);

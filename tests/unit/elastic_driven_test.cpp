@@ -94,6 +94,19 @@ TEST_F(OnTheSlab, FrictionHoldsTheProxyWithinItsCone) {
   EXPECT_NEAR(slides->force.z, -0.002 * kCoupling, 1e-12);
 }
 
+/// It comes aslant: its way meets the surface 0.5 mm before its foot, a third of the way.
+TEST_F(OnTheSlab, FrictionBeginsWhereTheWayMetTheSurface) {
+  rub(1);
+  move({0.0295, 0.03, kCell + 0.0005});
+  const auto held = move({0.031, 0.03, kCell - 0.001});
+  ASSERT_TRUE(held);
+  EXPECT_NEAR(held->force.x, 0.001 * kCoupling, 1e-12);
+  EXPECT_NEAR(held->force.z, -0.001 * kCoupling, 1e-12);
+  rub(0);
+  move({0.0295, 0.03, kCell + 0.0005});
+  EXPECT_NEAR(move({0.031, 0.03, kCell - 0.001})->force.x, 0, 1e-12);
+}
+
 /// What goes through the whole slab in one tick touches the side that it came from.
 TEST_F(OnTheSlab, DoesNotPassThrough) {
   move({0.03, 0.03, kCell + 0.001});

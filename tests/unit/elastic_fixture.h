@@ -39,9 +39,10 @@ inline ElasticPhysics slab_physics() {
   return out;
 }
 
-inline SharedScene elastic_scene(ElasticPhysics physics = slab_physics()) {
+inline SharedScene elastic_scene(ElasticPhysics physics = slab_physics(), std::uint32_t ticks = kFrame) {
   SceneBuilder builder;
-  builder.deformable("slab", sim::surface(slab_mesh()).mesh, {.frame_period = kFrame}).elastic(std::move(physics)).baselines(64);
+  const auto frame = static_cast<double>(ticks);
+  builder.deformable("slab", sim::surface(slab_mesh()).mesh, {.frame_period = frame}).elastic(std::move(physics)).baselines(64);
   return builder.build().value();
 }
 

@@ -141,6 +141,10 @@ TEST(Udp, AddressesReadBackAsWritten) {
   EXPECT_EQ(at("127.0.0.1:4000"), at("127.0.0.1:4000"));
   EXPECT_FALSE(at("127.0.0.1:4000") == at("127.0.0.1:4001"));
   EXPECT_EQ(Address().text(), "nowhere");
+  EXPECT_EQ(at("127.0.0.1:4000").port(), 4000);
+  EXPECT_EQ(at("[2001:db8::1]:65535").port(), 65535);
+  EXPECT_TRUE(at("[::1]:0").is_ipv6());
+  EXPECT_FALSE(at("127.0.0.1:0").is_ipv6());
 }
 
 TEST(Udp, WhatIsNoAddressIsRefused) {
@@ -150,6 +154,25 @@ TEST(Udp, WhatIsNoAddressIsRefused) {
     ASSERT_FALSE(address) << text;
     EXPECT_STREQ(address.error().rule, "R-NET-1") << text;
   }
+}
+
+TEST(Udp, AnUnknownHostHasTheFormOfAnAddress) {
+  for (const char* text : {"no-such-host.invalid:1", "256.0.0.1:1", "a b:1"}) EXPECT_TRUE(Address::has_form(text)) << text;
+  for (const char* text : {"host", "::1:4000", "host:65536", "host:", "[::1]4000"}) EXPECT_FALSE(Address::has_form(text)) << text;
+}
+
+TEST(Udp, WhatFindsNoRoomIsDroppedAndCounted) {
+  UdpSocket server = any_port(), client = UdpSocket::connect(server.own()).value();
+  EXPECT_GE(server.ask_room(1 << 16), std::size_t{1} << 16);
+  const std::vector<std::uint8_t> datagram(1000);
+  constexpr std::uint64_t kSent = 1000;
+  for (std::uint64_t i = 0; i < kSent; ++i) client.send(datagram);
+  std::array<std::uint8_t, 2000> buffer{};
+  std::uint64_t received = 0;
+  while (server.receive(buffer)) ++received;
+  EXPECT_GT(received, 10u);
+  EXPECT_EQ(received + server.dropped(), kSent);
+  EXPECT_GT(server.dropped(), 0u);
 }
 
 TEST(Udp, DatagramsGoThereAndBack) {
@@ -181,10 +204,15 @@ TEST(Udp, WhereNobodyListensIsALossAndNoEnd) {
   for (int i = 0; i < 10; ++i) static_cast<void>(client.send(bytes_of("x")));
   std::array<std::uint8_t, 10> buffer{};
   EXPECT_FALSE(client.receive(buffer));
+  EXPECT_TRUE(client.is_refused());
   UdpSocket again = UdpSocket::bind(place).value();
   while (!client.send(bytes_of("back"))) {
   }
-  EXPECT_EQ(wait_for(again), "back");
+  Address from;
+  EXPECT_EQ(wait_for(again, &from), "back");
+  again.send(from, bytes_of("here"));
+  EXPECT_EQ(wait_for(client), "here");
+  EXPECT_FALSE(client.is_refused()) << "somebody listens now";
 }
 
 TEST(Udp, APortThatIsTakenIsRefused) {

@@ -62,7 +62,7 @@ class Client {
     packet.tick = tick_;
     packet.number = ++number_;
     packet.updates = {&named, 1};
-    replica_->apply(packet, {&state, 1}, tick_);
+    replica_->apply(packet, {tick_, PagedArray<RigidState>(1, 1, [&](std::size_t) { return state; })}, tick_);
     tick_ += 40;
   }
 
@@ -303,14 +303,14 @@ TEST(Easing, KeyPacketsAreNotEased) {
     const Packet packet = only(sender.encode(tick, {.objects = {&truth, 1}}));
     if (packet.bytes.empty()) continue;
     ASSERT_TRUE(receiver.push(packet.bytes));
-    eased += receiver.objects()[0].ease > 0;
+    eased += receiver.object(0).ease > 0;
     if (!packet.key) continue;
     ++keys;
     auto late = Receiver::create(eased_scene()).value();
     ASSERT_TRUE(late.push(packet.bytes));
-    ASSERT_EQ(late.objects()[0].ease, 0);
+    ASSERT_EQ(late.object(0).ease, 0);
     const RigidPose shown = late.replica().pose(0, tick);
-    ASSERT_EQ(shown.position, late.objects()[0].position);
+    ASSERT_EQ(shown.position, late.object(0).position);
   }
   EXPECT_GT(keys, 20U);
   EXPECT_GT(eased, 20U);

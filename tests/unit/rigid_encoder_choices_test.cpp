@@ -29,7 +29,7 @@ Acceleration::Motion after(std::array<std::int64_t, 3> ticks, std::array<double,
   Acceleration acceleration(*scene);
   for (std::size_t i = 0; i < 3; ++i) {
     const RigidSample sample{{}, {velocities[i], 0, 0}, {0, 0, 2 * velocities[i]}};
-    acceleration.read(ticks[i], {&sample, 1});
+    acceleration.read(ticks[i], {&sample, 1}, scene->moving());
   }
   return acceleration.of(0);
 }
@@ -51,7 +51,7 @@ TEST(Acceleration, IsNothingWhereTheLastTwoTicksDoNotAgreeOrAreLongAgo) {
   const SharedScene scene = scene_of(1);
   Acceleration fresh(*scene);
   const RigidSample first{{}, {1, 2, 3}, {4, 5, 6}};
-  fresh.read(100, {&first, 1});
+  fresh.read(100, {&first, 1}, scene->moving());
   EXPECT_EQ(fresh.of(0).linear, Vec3{});
   EXPECT_EQ(fresh.of(0).angular, Vec3{});
 }
@@ -129,7 +129,7 @@ Acceleration after_three_ticks(const Scene& scene, double acceleration) {
   Acceleration out(scene);
   for (std::int64_t tick = 0; tick < 3; ++tick) {
     const RigidSample sample = falling(acceleration, tick);
-    out.read(tick, {&sample, 1});
+    out.read(tick, {&sample, 1}, scene.moving());
   }
   return out;
 }
@@ -216,7 +216,7 @@ TEST(Leaning, WhatTurnsLeansAsRotationAndForcePermit) {
   RigidSample now;
   for (std::int64_t tick = 0; tick < 3; ++tick) {
     now.angular_velocity = {0, 0, 0.08 * static_cast<double>(tick)};
-    fall.read(tick, {&now, 1});
+    fall.read(tick, {&now, 1}, scene->moving());
   }
   const Contact contact{ContactKind::surface, 0, {0.02, 0, 0}, {0, 1, 0}, {0.02, -1e-3, 0}, 700};
   const auto lead = [&](const RigidTriggers& triggers, bool is_touched) {
@@ -258,7 +258,7 @@ TEST(Leaning, MotionWithoutAccelerationIsToldAsWithoutIt) {
       const Packet packet = only(sender.encode(tick, {.objects = {&sample, 1}}));
       if (packet.bytes.empty()) continue;
       EXPECT_TRUE(receiver.push(packet.bytes));
-      out.push_back(receiver.objects()[0].velocity);
+      out.push_back(receiver.object(0).velocity);
     }
     return out;
   };

@@ -48,11 +48,12 @@ class Toss {
 
 Predictor chosen_at(std::int64_t now, const SharedScene& scene, std::int64_t step = 1, bool is_touched = false) {
   const Toss toss;
-  PredictorChoice choice(*scene);
+  PastStates past(*scene);
+  PredictorChoice choice(*scene, past);
   RigidState truth;
   for (std::int64_t tick = now - 200 * step; tick <= now; tick += step) {
     truth = to_grid(toss.at(tick), tick, scene->grid).value();
-    choice.read(tick, {&truth, 1});
+    past.read(tick, {&truth, 1}, scene->moving());
   }
   return choice.choose(0, truth, kPermitted, is_touched, {});
 }
@@ -86,12 +87,13 @@ TEST(PredictorChoice, ARailAgainstGravityIsSeenOnEveryAxis) {
   const auto choose = [](std::size_t axis, std::uint8_t dof) {
     const auto along = [axis](double v) { return Vec3{axis == 0 ? v : 0, axis == 1 ? v : 0, axis == 2 ? v : 0}; };
     const SharedScene scene = scene_with({along(-kGravity), 0}, dof);
-    PredictorChoice choice(*scene);
+    PastStates past(*scene);
+    PredictorChoice choice(*scene, past);
     RigidState truth;
     for (std::int64_t tick = 0; tick <= 200; ++tick) {
       const double t = 1e-3 * static_cast<double>(tick);
       truth = to_grid({{along(-kGravity / 2 * t * t), {}}, along(-kGravity * t), {}}, tick, scene->grid).value();
-      choice.read(tick, {&truth, 1});
+      past.read(tick, {&truth, 1}, scene->moving());
     }
     return choice.choose(0, truth, kPermitted, false, {});
   };
@@ -104,10 +106,11 @@ TEST(PredictorChoice, ARailAgainstGravityIsSeenOnEveryAxis) {
 
 TEST(PredictorChoice, WithoutAPastItIsLinear) {
   const SharedScene scene = scene_with({{0, 0, -kGravity}, kFriction});
-  PredictorChoice choice(*scene);
+  PastStates past(*scene);
+  PredictorChoice choice(*scene, past);
   const RigidState truth = to_grid(Toss().at(1350), 1350, scene->grid).value();
   EXPECT_EQ(choice.choose(0, truth, kPermitted, false, {}), Predictor::linear);
-  choice.read(1350, {&truth, 1});
+  past.read(1350, {&truth, 1}, scene->moving());
   EXPECT_EQ(choice.choose(0, truth, kPermitted, false, {}), Predictor::linear);
 }
 
@@ -115,14 +118,15 @@ TEST(PredictorChoice, WithoutAPastItIsLinear) {
 Predictor chosen_after(double acceleration, const RigidState& current) {
   const SharedScene scene = testing::driven_scene(Dof::all, {});
   const auto path = testing::path_along(scene, 151, [](std::int64_t) { return Vec3{-1, 0, 0}; });
-  PredictorChoice choice(*scene);
-  choice.know(*path);
+  PastStates past(*scene);
+  PredictorChoice choice(*scene, past);
+  choice.know(*path, past);
   RigidState truth;
   for (std::int64_t tick = 0; tick <= 150; ++tick) {
     const double t = 1e-3 * static_cast<double>(tick);
     truth = to_grid({{{acceleration / 2 * t * t, 0, 0}, {}}, {acceleration * t, 0, 0}, {}}, tick, scene->grid).value();
     truth.contact = testing::contact_at({-0.02, 0, 0}, {-1, 0, 0});
-    choice.read(tick, {&truth, 1});
+    past.read(tick, {&truth, 1}, scene->moving(), {&truth.contact, 1});
   }
   return choice.choose(0, truth, kPermitted, true, current);
 }
@@ -200,21 +204,21 @@ struct Pushing {
   RigidSample cube{{{}, {}}, {0.1, 0, 0}, {}};
   Contact contact{ContactKind::surface, 0, {-0.02, 0, 0}, {-1, 0, 0}, {}, kPush};
   std::int64_t tick = 0;
-  std::vector<RigidState> truth{1};
+  DrivenContact told;
 
   explicit Pushing(double braked) : drag(braked) { path->shift(0, 0); }
 
   DrivenContact step() {
     path->add(static_cast<std::uint64_t>(tick) + 1, testing::device_state(*scene, tick, device));
     contact.device = device;
-    choice.read(tick, {&cube, 1}, {&contact, contact.kind == ContactKind::none ? 0u : 1u}, truth);
+    choice.read(tick, {&cube, 1}, {&contact, contact.kind == ContactKind::none ? 0u : 1u}, {&told, 1});
     const double depth = std::max(0.0, device.x - (cube.pose.position.x - 0.02));
     const double speed = cube.velocity.x + kTick * (kPush / kMass * depth - drag);
     cube.pose.position.x += kTick * speed;
     cube.velocity.x = (1 - testing::kLoss) * speed;
     device.x += 1e-4;
     ++tick;
-    return truth[0].contact;
+    return told;
   }
 };
 
@@ -246,7 +250,7 @@ TEST(DrivenChoice, ObjectsThatTheDeviceMovesInTurnsAreToldAlike) {
   DevicePath path(device_scene(*scene).value());
   path.shift(0, 0);
   DrivenChoice choice(*scene, path);
-  std::vector<RigidState> truth(kCubes);
+  std::vector<DrivenContact> told(kCubes);
   std::vector<RigidSample> cubes(kCubes);
   for (std::int64_t tick = 0; tick < 60; ++tick) {
     const auto pushed = static_cast<std::uint32_t>(tick / 20);
@@ -255,13 +259,13 @@ TEST(DrivenChoice, ObjectsThatTheDeviceMovesInTurnsAreToldAlike) {
     // Pushed at a constant speed: the drag is what the spring pulls.
     for (RigidSample& cube : cubes) cube = {{device + Vec3{0.0185, 0, 0}, {}}, {0.1, 0, 0}, {}};
     const Contact contact{ContactKind::surface, pushed, {-0.02, 0, 0}, {-1, 0, 0}, device, kPush};
-    choice.read(tick, cubes, {&contact, 1}, truth);
+    choice.read(tick, cubes, {&contact, 1}, told);
     for (std::uint32_t i = 0; i < kCubes; ++i) {
-      EXPECT_EQ(truth[i].contact == DrivenContact{}, i != pushed || tick % 20 < 4) << tick << ' ' << i;
+      EXPECT_EQ(told[i] == DrivenContact{}, i != pushed || tick % 20 < 4) << tick << ' ' << i;
     }
     if (tick % 20 == 19) {
-      EXPECT_NEAR(std::ldexp(truth[pushed].contact.drag, -DrivenContact::kDrag),
-                  kPush / kMass * 0.0015 - 0.1 * 1000 * testing::kLoss, 0.15);
+      EXPECT_NEAR(std::ldexp(told[pushed].drag, -DrivenContact::kDrag), kPush / kMass * 0.0015 - 0.1 * 1000 * testing::kLoss,
+                  0.15);
     }
   }
 }

@@ -196,7 +196,7 @@ TEST(Rigid, ObjectsAtRestStayAtRestAtTheReceiver) {
     const Packet packet = only(sender.encode(tick, {{&sample, 1}}));
     ASSERT_TRUE(packet.bytes.empty() || receiver.push(packet.bytes));
   }
-  EXPECT_EQ(receiver.objects()[0].velocity, (std::array<std::int32_t, 3>{}));
+  EXPECT_EQ(receiver.object(0).velocity, (std::array<std::int32_t, 3>{}));
 }
 
 TEST(Rigid, AnObjectThatCanOnlySlideSendsOneCoordinate) {

@@ -109,7 +109,7 @@ struct Hellos {
     client->advance(answer);
     return bytes_of(client->flight());
   }
-  std::unique_ptr<const Context> context;
+  std::unique_ptr<Context> context;
   std::unique_ptr<Association> client;
 };
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <random>
 
+#include <tactus/net/rate_limit.h>
 #include "tests/property/allocated.h"
 #include "tests/unit/seal_fixture.h"
 
@@ -105,6 +106,7 @@ TEST(SealServer, AHundredThousandDatagramsOfStrangersLeaveNothing) {
   EXPECT_EQ(pair.server.peers(), 1u);
   EXPECT_EQ(pair.server.handshakes(), 0u);
   EXPECT_LT(answered, heard);
+  EXPECT_GT(pair.server.counters().limited, 40'000u) << "beyond 5000 per second nothing is done for strangers";
   EXPECT_TRUE(pair.say_up("still there"));
   EXPECT_EQ(pair.heard_up.size(), 1u);
 }
@@ -123,8 +125,9 @@ TEST(SealServer, ForgedDatagramsOfAClientEndNothing) {
     EXPECT_FALSE(pair.server.open(pair.now, pair.at, datagram));
     while (const auto answer = pair.server.poll_datagram()) said_back += answer->bytes.size();
     ASSERT_LE(said_back, 3 * datagram.size());
-    pair.server.work(pair.now += 100);
+    pair.server.work(pair.now += 200);  // as many as a client may say
   }
+  EXPECT_EQ(pair.server.counters().limited, 0u);
   EXPECT_EQ(pair.server.peers(), 1u);
   EXPECT_FALSE(pair.server.poll_closed());
   EXPECT_TRUE(pair.say_up("still there"));
@@ -189,6 +192,63 @@ struct Crowd {
   std::vector<std::unique_ptr<seal::Client>> clients;
   std::size_t most_handshakes = 0;
 };
+
+/// A client with a key sends 50 000 datagrams per second, one host without as many ClientHellos from its ports, and forged hosts, too: whoever
+/// is there is heard as without them, and who comes comes in.
+TEST(SealServer, FloodsReachNobodyElse) {
+  const Bytes hello = flights().front();
+  Crowd crowd(3, {});
+  crowd.run(100'000);
+  ASSERT_EQ(crowd.open(), 3u);
+  crowd.add();
+  std::uint64_t heard = 0, sent = 0, flooded = 0;
+  const std::uint64_t began = crowd.now, cookies = crowd.server.counters().cookies;
+  constexpr std::uint64_t kSeconds = 4;
+  for (std::uint64_t tick = 0; tick < kSeconds * 1000; ++tick) {
+    for (std::size_t i = 0; i < 2; ++i, ++sent) {
+      const auto opened = crowd.server.open(crowd.now, crowd.at(i), bytes_of(crowd.clients[i]->seal(bytes_of("true")).value()));
+      heard += opened && opened->peer == i + 1 ? 1u : 0u;
+    }
+    for (unsigned i = 0; i < 50; ++i) {
+      const auto forged = static_cast<unsigned>(50 * tick + i);
+      flooded += crowd.server.open(crowd.now, crowd.at(2), bytes_of(crowd.clients[2]->seal(bytes_of("much")).value())) ? 1u : 0u;
+      static_cast<void>(crowd.server.open(crowd.now, address("198.51.100.9:" + std::to_string(1 + forged % 60'000)), hello));
+      if (i % 25 == 0)  // 2000 per second
+        static_cast<void>(
+            crowd.server.open(crowd.now,
+                              address("10." + std::to_string(forged / 65'536) + '.' + std::to_string(forged / 256 % 256) + '.' +
+                                      std::to_string(forged % 256) + ":9"),
+                              hello));
+      crowd.drain();
+    }
+    crowd.run(1000);
+    const bool may_wait = crowd.now - began < 500'000;
+    ASSERT_TRUE(may_wait || crowd.clients[3]->is_open()) << tick;
+  }
+  EXPECT_EQ(heard, sent);
+  EXPECT_LE(flooded, (kSeconds + 1) * net::kClientRate.datagrams);
+  EXPECT_LE(crowd.server.counters().cookies - cookies, (kSeconds + 1) * net::kStrangersRate.datagrams);
+  EXPECT_GT(crowd.server.counters().limited, kSeconds * 80'000);
+  EXPECT_GT(crowd.server.limited_of(3), kSeconds * 40'000) << "who it was can be told";
+  EXPECT_EQ(crowd.server.limited_of(1), 0u);
+}
+
+/// Who has proven an address can still make a server compare cookies, but not often; and comes in.
+TEST(SealServer, AHandshakeIsFewDatagrams) {
+  SealPair pair;
+  Bytes with_cookie;
+  pair.network_up = [&](const Bytes& datagram) {
+    if (pair.server.handshakes() == 0) with_cookie = datagram;
+    return pair.server.handshakes() == 0 ? std::vector<Bytes>{datagram} : std::vector<Bytes>{};
+  };
+  pair.run(10'000);
+  ASSERT_EQ(pair.server.handshakes(), 1u);
+  for (int i = 0; i < 1000; ++i) static_cast<void>(pair.server.open(pair.now, pair.at, with_cookie));
+  EXPECT_GE(pair.server.counters().limited, 800u);
+  pair.network_up = [](const Bytes& datagram) { return std::vector<Bytes>{datagram}; };
+  pair.run(1'000'000);
+  EXPECT_TRUE(pair.client.is_open());
+}
 
 TEST(SealServer, ServesManyAtATime) {
   Crowd crowd(20, {.peers = 20});

@@ -100,6 +100,38 @@ TEST(SessionClient, FollowsOverALinkThatLosesAndReorders) {
   EXPECT_NEAR(status.loss, 0.1, 0.05);
 }
 
+/// [us] until the server's welcome is here, over a network that loses three of ten datagrams each way.
+std::uint64_t time_of_join(const SharedScene& scene, std::uint64_t seed) {
+  SessionWorld world(scene, {});
+  world.add({}, {.seed = 2 * seed, .delay = 20'000, .loss = 0.3}, {.seed = 2 * seed + 1, .delay = 20'000, .loss = 0.3});
+  const std::uint64_t begun = world.now;
+  while (world.ends[0].client->status().state == SessionState::joining) world.step();
+  return world.now - begun;
+}
+
+TEST(SessionClient, ALostJoinGoesAgainSoon) {
+  const SharedScene scene = pendulum_scene();
+  int late = 0;
+  std::uint64_t sum = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const std::uint64_t time = time_of_join(scene, seed);
+    late += time > 1'000'000 ? 1 : 0;
+    sum += time;
+  }
+  EXPECT_LE(late, 14) << "0.51^5";
+  EXPECT_LT(sum / 200, 350'000u);
+}
+
+TEST(SessionClient, WhoHearsNothingIsSentNoMoreThanItSends) {
+  SessionWorld world(pendulum_scene(), {});
+  world.add({}, {}, {.loss = 1});
+  for (int i = 0; i < 9000; ++i) world.step();
+  EXPECT_EQ(world.ends[0].client->status().state, SessionState::joining);
+  EXPECT_EQ(world.datagrams_down, world.datagrams_up) << "one answer to each join, which is the longer one";
+  EXPECT_GE(world.datagrams_up, 9u);
+  EXPECT_LE(world.datagrams_up, 12u);
+}
+
 TEST(SessionClient, LeavesAndMayJoinAgain) {
   Swing swing({.seed = 1, .delay = 1'000}, {.seed = 2, .delay = 1'000});
   swing.run(300);
@@ -122,7 +154,7 @@ TEST(SessionClient, GivesUpWhenNobodyAnswers) {
   ASSERT_EQ(end.events.size(), 1u);
   EXPECT_EQ(end.events[0].kind, ClientEvent::Kind::closed);
   EXPECT_EQ(end.events[0].reason, LeaveReason::silence);
-  EXPECT_LE(swing.world.datagrams_up, 10u);
+  EXPECT_LE(swing.world.datagrams_up, 12u);
 }
 
 TEST(SessionClient, ForceFadesWithin100MillisecondsWithoutNewsAndReturns) {

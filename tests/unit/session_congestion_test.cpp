@@ -25,191 +25,125 @@ constexpr std::uint64_t kPeriod = 500'000;  // [us]
 /// A server's ticks, one each millisecond, and the answers of a client each 20 ms.
 struct Ticks {
   explicit Ticks(double most = 8) : congestion(most) { congestion.begin(now); }
-  /// in   held  of the ticks of each period, the first ones      trip  [us] of each answer
-  void periods(unsigned count, unsigned held, std::int64_t trip = 40'000) {
-    for (unsigned i = 0; i < count; ++i) {
+  /// in   wait  [ticks] each of `waits` rows of held ticks in each period, which begin evenly;  shapes  one each 20 ticks
+  void periods(unsigned count, unsigned waits, unsigned wait, bool shapes = false) {
+    const unsigned every = waits == 0 ? 500 : 500 / waits;
+    for (unsigned i = 0; i < count; ++i)
       for (unsigned tick = 0; tick < 500; ++tick) {
         now += 1000;
-        if (tick % 20 == 0) congestion.round_trip({trip, variation, 40'000}, trip, now);
-        if (congestion.tick(tick < held, now)) ++changes;
+        if (tick % 20 == 0) congestion.answered();
+        const bool held = waits > 0 && tick % every < wait;
+        if (congestion.tick(held, shapes && tick % 20 == 0, now)) ++changes;
       }
-    }
   }
 
   Congestion congestion;
   std::uint64_t now = 7 * kPeriod;
-  std::int64_t variation = 5'000;
   int changes = 0;
 };
 
 TEST(Congestion, AFreeWayWidensNothing) {
   Ticks run;
-  run.periods(100, 0);
-  run.periods(100, 49);
+  run.periods(100, 0, 0);
+  EXPECT_FALSE(run.congestion.waits());
+  run.periods(100, 2, 25);
+  EXPECT_FALSE(run.congestion.waits()) << "a tenth is not more than a tenth";
   EXPECT_EQ(run.congestion.widening(), 1);
   EXPECT_EQ(run.congestion.so_far().time, 0u);
   EXPECT_EQ(run.congestion.so_far().widest, 1);
   EXPECT_EQ(run.changes, 0);
 }
 
+TEST(Congestion, WhatWaitsBrieflyTakesOthersAlong) {
+  Ticks run;
+  run.periods(100, 25, 19);  // of each 20 ticks
+  EXPECT_TRUE(run.congestion.waits());
+  EXPECT_EQ(run.congestion.widening(), 1) << "nothing waits for long";
+  run.periods(100, 5, 99);
+  EXPECT_EQ(run.congestion.widening(), 1);
+  run.periods(1, 4, 124);
+  EXPECT_EQ(run.congestion.widening(), std::sqrt(2.0));
+}
+
+TEST(Congestion, AShapeThatWaitsIsNeverShown) {
+  Ticks run;
+  run.periods(4, 50, 1, true);  // of 10 ticks one: every second shape
+  EXPECT_EQ(run.congestion.widening(), 4);
+  run.periods(1, 2, 1, true);  // two of 25
+  EXPECT_EQ(run.congestion.widening(), 4) << "neither calm nor congested";
+  run.periods(1, 1, 0, true);
+  EXPECT_EQ(run.congestion.widening(), 2 * std::sqrt(2.0));
+}
+
 TEST(Congestion, SilenceSaysNothing) {
   Ticks run;
-  run.periods(6, 500);
+  run.periods(6, 1, 500);
   const double widest = run.congestion.widening();
   EXPECT_GT(widest, 7);
-  for (unsigned tick = 0; tick < 60'000; ++tick) run.congestion.tick(false, run.now += 1000);
-  EXPECT_EQ(run.congestion.widening(), widest) << "no answer came";
-  run.periods(6, 0);
-  EXPECT_LT(run.congestion.widening(), widest);
+  run.periods(1, 1, 0);
+  for (unsigned tick = 0; tick < 60'000; ++tick) run.congestion.tick(false, false, run.now += 1000);
+  const double silent = run.congestion.widening();
+  EXPECT_GT(silent, widest / 1.5) << "no answer came but in the first period";
+  run.periods(6, 0, 0);
+  EXPECT_LT(run.congestion.widening(), silent);
 }
 
 TEST(Congestion, WidensByStepsToItsLimit) {
   for (const double most : {1.0, 1.4, 2.0, 8.0, 64.0}) {
     Ticks run(most);
-    run.periods(1, 51);
+    run.periods(1, 1, 101);
     EXPECT_EQ(run.congestion.widening(), most < 1.5 ? 1 : std::sqrt(2.0)) << most;
-    run.periods(30, 500);
+    run.periods(30, 1, 500);
     EXPECT_EQ(run.congestion.widening(), most < 1.5 ? 1 : most);
     EXPECT_EQ(run.congestion.so_far().widest, run.congestion.widening());
   }
 }
 
-TEST(Congestion, AStandingQueueIsCongestion) {
+TEST(Congestion, NarrowsAfterEachCalmPeriod) {
   Ticks run;
-  run.periods(4, 0, 119'000);
-  EXPECT_EQ(run.congestion.widening(), 1);
-  run.periods(4, 0, 121'000);
-  EXPECT_EQ(run.congestion.widening(), 4);
-  Ticks jitter;
-  jitter.variation = 50'000;
-  jitter.periods(4, 0, 139'000);
-  EXPECT_EQ(jitter.congestion.widening(), 1);
-}
-
-TEST(Congestion, OneFastAnswerInAPeriodIsEnough) {
-  Ticks run;
-  for (int i = 0; i < 8; ++i) {
-    run.congestion.round_trip({500'000, 1000, 40'000}, 40'500, run.now);
-    run.periods(1, 0, 500'000);
-  }
-  EXPECT_EQ(run.congestion.widening(), 1);
-}
-
-TEST(Congestion, NarrowsAfterFourCalmPeriodsEach) {
-  Ticks run;
-  run.periods(2, 500);
+  run.periods(2, 1, 500);
   EXPECT_EQ(run.congestion.widening(), 2);
-  run.periods(3, 0);
-  EXPECT_EQ(run.congestion.widening(), 2);
-  run.periods(1, 0);
+  run.periods(1, 0, 0);
   EXPECT_EQ(run.congestion.widening(), std::sqrt(2.0));
-  run.periods(3, 0);
-  run.periods(1, 1);  // neither calm nor congested: it begins anew
-  run.periods(3, 0);
+  run.periods(8, 5, 60);  // neither calm nor congested
   EXPECT_EQ(run.congestion.widening(), std::sqrt(2.0));
-  run.periods(1, 0);
+  run.periods(1, 5, 50);
   EXPECT_EQ(run.congestion.widening(), 1);
   EXPECT_EQ(run.changes, 4);
   EXPECT_EQ(run.congestion.so_far().widest, 2);
-  EXPECT_EQ(run.congestion.so_far().time, (1 + 12) * kPeriod);
+  EXPECT_EQ(run.congestion.so_far().time, (1 + 10) * kPeriod);
 }
 
 /// How many calm periods pass until a step narrower.
 unsigned patience(Ticks& run) {
   const double before = run.congestion.widening();
   unsigned out = 0;
-  for (; run.congestion.widening() == before && out < 1000; ++out) run.periods(1, 0);
+  for (; run.congestion.widening() == before && out < 1000; ++out) run.periods(1, 0, 0);
   return out;
 }
 
 TEST(Congestion, AStepThatWasTooEarlyMakesItWaitLonger) {
   Ticks run;
-  run.periods(4, 500);
-  for (const unsigned expected : {4u, 8u, 16u, 32u, 64u, 64u}) {
+  run.periods(4, 1, 500);
+  for (const unsigned expected : {1u, 2u, 4u, 8u, 16u, 32u, 64u, 64u}) {
     EXPECT_EQ(patience(run), expected);
-    run.periods(1, 500);
+    run.periods(1, 1, 500);
   }
   EXPECT_EQ(patience(run), 64u);
   EXPECT_EQ(patience(run), 64u) << "the one before still counts";
-  EXPECT_EQ(patience(run), 4u) << "it was not too early";
+  EXPECT_EQ(patience(run), 1u) << "it was not too early";
 }
 
 TEST(Congestion, ANewEpochBeginsAtItsBounds) {
   Ticks run;
-  run.periods(4, 500);
+  run.periods(4, 1, 500);
   const std::uint64_t before = run.congestion.so_far().time;
   EXPECT_EQ(before, 3 * kPeriod);
   run.congestion.begin(run.now);
   EXPECT_EQ(run.congestion.widening(), 1);
-  run.periods(4, 0);
+  run.periods(4, 0, 0);
   EXPECT_EQ(run.congestion.so_far().time, before);
   EXPECT_EQ(run.congestion.so_far().widest, 4);
-}
-
-// ==== session token bucket ====
-
-/// Bits that pass in ten seconds if a datagram of this size is offered each `every` microseconds.
-std::int64_t passed(std::uint64_t rate, std::int64_t bits, std::uint64_t every) {
-  TokenBucket bucket(rate);
-  std::int64_t out = 0;
-  for (std::uint64_t now = 1'000'000; now < 11'000'000; now += every) {
-    if (!bucket.is_open(now)) continue;
-    bucket.take(bits, now);
-    out += bits;
-  }
-  return out;
-}
-
-TEST(TokenBucket, LetsItsRatePass) {
-  for (const std::uint64_t rate : {6'000u, 200'000u, 10'000'000u}) {
-    const std::int64_t ten_seconds = 10 * static_cast<std::int64_t>(rate), burst = ten_seconds / 200;
-    const std::int64_t bits = 8 * 300;
-    EXPECT_LE(passed(rate, bits, 100), ten_seconds + burst + bits) << "what it holds, and one datagram too many";
-    EXPECT_GE(passed(rate, bits, 100), ten_seconds - bits);
-  }
-  EXPECT_EQ(passed(200'000, 800, 10'000), 1000 * 800) << "what is less passes at once";
-}
-
-TEST(TokenBucket, HoldsWhat50MillisecondsBring) {
-  TokenBucket bucket(1'000'000);
-  ASSERT_TRUE(bucket.is_open(3'600'000'000));
-  std::int64_t burst = 0;
-  for (; bucket.is_open(3'600'000'000); burst += 1000) bucket.take(1000, 3'600'000'000);
-  EXPECT_EQ(burst, 50'000);
-  EXPECT_FALSE(bucket.is_open(3'600'000'000));
-  EXPECT_TRUE(bucket.is_open(3'600'000'001));
-}
-
-TEST(TokenBucket, ADebtIsPaid) {
-  TokenBucket bucket(1'000'000);
-  bucket.take(60'000, 0);
-  EXPECT_FALSE(bucket.is_open(10'000));
-  EXPECT_TRUE(bucket.is_open(10'001));
-}
-
-TEST(TokenBucket, ADebtIsPaidWhileNobodyAsksWhetherItIsOpen) {
-  TokenBucket bucket(1'000'000);
-  for (std::uint64_t now = 0; now < 10'000'000; now += 1000) bucket.take(990, now);  // acknowledgements of a long join
-  EXPECT_TRUE(bucket.is_open(10'000'000));
-  bucket.take(2'000'000, 10'000'000);
-  EXPECT_FALSE(bucket.is_open(11'900'000)) << "a debt is not forgotten either";
-  EXPECT_TRUE(bucket.is_open(12'000'001));
-}
-
-TEST(TokenBucket, WithoutARateAllPasses) {
-  TokenBucket bucket(0);
-  for (std::uint64_t now = 0; now < 1000; ++now) {
-    ASSERT_TRUE(bucket.is_open(now));
-    bucket.take(std::int64_t{1} << 40, now);
-  }
-}
-
-TEST(TokenBucket, TheLargestRateDoesNotOverflow) {
-  TokenBucket bucket(1'000'000'000'000);
-  for (std::uint64_t now = 0; now < 10'000'000; now += 49'999) {
-    ASSERT_TRUE(bucket.is_open(now));
-    bucket.take(9600, now);
-  }
 }
 
 // ==== session loss bursts ====

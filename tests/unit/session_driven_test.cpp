@@ -140,7 +140,7 @@ Course course(const char* name, double told, const sim::LinkOptions& link, std::
     ++out.shown;
     const double error = norm(simulation->received_poses(0)[0].position - truth[static_cast<std::size_t>(shown)]);
     out.outside += error > 3e-4 ? 1u : 0u;
-    out.driven += network->client(0).receiver()->objects()[0].predictor == Predictor::driven ? 1u : 0u;
+    out.driven += network->client(0).receiver()->object(0).predictor == Predictor::driven ? 1u : 0u;
   }
   out.packets = network->sent_to(0).packets_sent;
   return out;

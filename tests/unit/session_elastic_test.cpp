@@ -81,6 +81,17 @@ TEST(Elastic, OneWhoKnowsTheBodyNeedsHardlyAPacket) {
   EXPECT_LT(knows.felt, 1.02 * ignorant.felt) << "late by the same network, and no more than that";
 }
 
+/// The method that the program chooses, and a scene with friction in sub-steps of velocity Verlet.
+TEST(Elastic, TheBodyStepsAsTheServerDoes) {
+  sim::Scene implicit = membrane();
+  implicit.deformables[0].method = "auto";
+  for (const sim::Scene& scene : {implicit, sim::load_scene(*sim::find_scene("membrane")).value()}) {
+    const Course knows = course(scene, {.delay = 10'000}, 4000);
+    EXPECT_EQ(knows.outside, 0u);
+    EXPECT_LE(knows.packets, 4u);
+  }
+}
+
 /// Young's modulus is 10 % off: the bounds hold, and packets are fewer than without a body.
 TEST(Elastic, AWrongBodyKeepsTheBounds) {
   const Course wrong = course(membrane(), {.delay = 10'000}, 4000, 1.1);

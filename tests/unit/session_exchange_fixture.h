@@ -39,7 +39,8 @@ struct Meshes {
   std::uint32_t squares = 4;
   std::size_t count = 0;
   bool layered = false;
-  double noise = 5e-4;  // [m]
+  double noise = 5e-4;        // [m]
+  std::uint64_t playout = 0;  // [us] that the client has fixed; 0: none
 };
 
 /// A server's end that sends the packets of a scene at 100 ticks per second, and a client's end.
@@ -58,10 +59,10 @@ struct Ends {
     SenderOptions options;
     options.triggers.reduction = Reduction::none;  // a packet of the bodies in every tick
     options.policy = {.key_interval = 0, .baseline = meshes.baseline};
-    server->send_with(Sender::create(scene, options).value());
+    server->set_playout(meshes.playout);
+    server->send_with(Sender::create(scene, options).value(), meshes.baseline == Baseline::repaired);
     client->receive_with(Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}}).value());
-    if (meshes.baseline == Baseline::repaired) server->repair();
-    else client->expect(false);
+    if (meshes.baseline != Baseline::repaired) client->expect(false);
     samples.resize(objects);
   }
 

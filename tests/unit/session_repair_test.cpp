@@ -21,7 +21,7 @@ using testing::types_of;
 
 /// A round trip of 20 ms is known.
 struct RepairedEnds : Ends {
-  RepairedEnds() : Ends({.baseline = Baseline::repaired}) {
+  explicit RepairedEnds(const testing::Meshes& meshes = {.baseline = Baseline::repaired}) : Ends(meshes) {
     for (int i = 0; i < 20; ++i) step();
   }
   void step() {
@@ -66,6 +66,31 @@ TEST(RepairedExchange, SecondCopiesChangeNothing) {
   EXPECT_EQ(ends.client->traffic().packets_refused, 0u);
   EXPECT_EQ(ends.server->traffic().lost, 1u) << "datagrams with copies are acknowledged";
   ends.expect_same();
+}
+
+/// There is no time for a second round of them.
+TEST(RepairedExchange, OverALongWayThereAreMoreCopies) {
+  for (const std::uint64_t way : {10u, 50u}) {
+    Ends ends({.baseline = Baseline::repaired});
+    const auto step = [&] {
+      ends.submit();
+      const auto down = ends.drain(*ends.server);
+      ends.now += way * kMillisecond;
+      ends.give(down);
+      ends.now += 10 * kMillisecond;  // until it answers
+      const auto up = ends.drain(*ends.client);
+      ends.now += way * kMillisecond;
+      for (const Bytes& bytes : up) EXPECT_TRUE(ends.hear(*ends.server, bytes));
+    };
+    for (int i = 0; i < 20; ++i) step();
+    ends.submit();
+    ASSERT_EQ(ends.drain(*ends.server).size(), 1u);  // it is lost
+    ends.now += 10 * kMillisecond;
+    step();
+    std::size_t copies = 0;
+    for (int i = 0; i < 5; ++i, ends.now += 10 * kMillisecond) copies += ends.drain(*ends.server).size();
+    EXPECT_EQ(copies, way == 10 ? 2u : 3u) << 2 * way << " ms there and back";
+  }
 }
 
 /// Nothing after the last packet tells that it is lost.
@@ -113,6 +138,41 @@ TEST(RepairedExchange, AClientThatAsksGetsAKeyPacketOnceInTheTimeOfAnAnswer) {
   ends.now += ends.server->patience();
   ends.server->want_key(ends.now);
   EXPECT_TRUE(is_key());
+  ends.expect_same();
+}
+
+// ==== packets that nothing waits for ====
+
+/// Where a client has fixed a delay that is long enough, a copy comes before the tick is shown, or a little later.
+TEST(PromptExchange, WhatIsLostGoesAgainToAClientThatWaitsForIt) {
+  for (const std::uint64_t playout : {0u, 5u, 60u}) {
+    RepairedEnds ends({.baseline = Baseline::acknowledged, .playout = playout * kMillisecond});
+    const std::uint64_t sent = ends.server->traffic().packets_sent, heard = ends.client->traffic().packets_heard;
+    ASSERT_EQ(ends.lose().size(), 1u);
+    for (int i = 0; i < 8; ++i) ends.step();
+    const std::uint64_t copies = ends.server->traffic().packets_sent - sent - 9;  // beside one in each tick
+    EXPECT_EQ(copies, playout == 60 ? 1u : 0u) << playout;
+    EXPECT_EQ(ends.client->traffic().packets_heard, heard + 8 + copies) << playout;
+    EXPECT_FALSE(ends.client->waits_since()) << "nothing waits for it";
+    EXPECT_EQ(ends.client->traffic().packets_refused, 0u);
+    ends.expect_same();
+  }
+}
+
+/// What is too old to be shown does not go, and no key packet makes up for it.
+TEST(PromptExchange, NoCopyIsTooLate) {
+  RepairedEnds ends({.baseline = Baseline::acknowledged, .playout = 60 * kMillisecond});
+  for (int i = 0; i < 30; ++i) ends.lose();
+  const std::uint64_t before = ends.server->traffic().packets_sent;
+  bool key = false;
+  for (int i = 0; i < 8; ++i) {
+    const auto packets = ends.submit();
+    key = key || packets[0].key;
+    ends.give(ends.drain(*ends.server));
+    ends.answer();
+  }
+  EXPECT_LE(ends.server->traffic().packets_sent, before + 8 + 9) << "those of the last 90 ms";
+  EXPECT_FALSE(key);
   ends.expect_same();
 }
 

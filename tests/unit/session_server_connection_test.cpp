@@ -24,8 +24,10 @@ constexpr std::uint64_t kEpoch = 0x1234567890, kPeer = 9, kNow = 5'000'000;
 
 /// A connection, and datagrams for it written by hand.
 struct Desk {
+  std::size_t hashes = 4096;
+  std::uint64_t pieces_at = 0;
   explicit Desk(SessionServerOptions options = {}, std::uint32_t squares = 0, Role role = Role::participant)
-      : connection(3, options) {
+      : connection(3, options, pieces_at) {
     SceneBuilder builder(100);
     builder.rigid("body");
     if (squares > 0) builder.deformable("sheet", testing::sheet(squares, squares));
@@ -214,7 +216,8 @@ TEST(ServerConnection, AWrongHashAsksForAKeyPacket) {
     const RigidSample sample{
         .pose = {{0.02 * static_cast<double>(tick * tick % 97), 0, 0}, {}}, .velocity = {}, .angular_velocity = {}};
     desk.now += 10'000;
-    ASSERT_TRUE(desk.connection.submit(desk.now, tick, {.objects = {&sample, 1}, .contacts = {}, .deformables = {}}));
+    ASSERT_TRUE(
+        desk.connection.submit(desk.now, tick, {.objects = {&sample, 1}, .contacts = {}, .deformables = {}}, desk.hashes));
     for (const Bytes& bytes : desk.drain()) {
       const std::uint16_t newest = std::get<Numbered>(read_datagram(bytes, Direction::down).value()).number;
       const auto hash = static_cast<std::uint32_t>(desk.connection.state_hash(0));
@@ -343,7 +346,7 @@ TEST(ServerConnection, TheNextClientInItsPlaceBeginsWithCleanCounters) {
   for (int i = 0; i < 200; ++i) {
     desk.now += 10'000;
     body.pose.position.x = 0.01 * (i % 7);
-    ASSERT_TRUE(desk.connection.submit(desk.now, i, {.objects = {&body, 1}, .contacts = {}, .deformables = {}}));
+    ASSERT_TRUE(desk.connection.submit(desk.now, i, {.objects = {&body, 1}, .contacts = {}, .deformables = {}}, desk.hashes));
     for (const Bytes& bytes : desk.drain()) {
       const std::uint16_t newest = std::get<Numbered>(read_datagram(bytes, Direction::down).value()).number;
       ASSERT_TRUE(desk.hear({Acknowledgement{newest, 0, 0}, HashPart{0, newest, 1}}));

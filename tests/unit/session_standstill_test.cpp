@@ -65,10 +65,11 @@ class Standstill {
   void forget() {
     worst_lead_ = 0;
     frozen_ = stale_ = 0;
-    most_ = 0;
+    most_ = worst_offset_ = 0;
   }
   std::uint64_t wrong_states() const { return server_->status(0).traffic.wrong_states; }
-  double offset_error() const {  ///< [ms]
+  double worst_offset() const { return worst_offset_; }  ///< [ms] since forget()
+  double offset_error() const {                          ///< [ms]
     const auto offset = client_->status().clock_offset;
     const auto truth = static_cast<std::int64_t>(server_now()) - static_cast<std::int64_t>(client_now());
     return offset ? 1e-3 * static_cast<double>(*offset - truth) : NAN;
@@ -121,6 +122,7 @@ class Standstill {
     const std::int64_t shown = client_->shown_tick(client_now());
     share_ = client_->force_share(client_now());
     most_ = std::max(most_, share_);
+    worst_offset_ = std::max(worst_offset_, std::abs(offset_error()));
     lag_ = tick_ - shown;
     if (shown >= 0 && share_ > 0.5) {
       if (lag_ > 150) ++stale_;
@@ -138,7 +140,7 @@ class Standstill {
   std::optional<SessionClient> client_;
   sim::Link up_ = sim::Link::create(link(5, of_.loss)).value(), down_ = sim::Link::create(link(6, of_.loss)).value();
   std::int64_t tick_ = -1, lag_ = 0, worst_lead_ = 0, shown_ = -1;
-  double share_ = 0, most_ = 0;
+  double share_ = 0, most_ = 0, worst_offset_ = 0;
   int frozen_ = 0, stale_ = 0;
 };
 
@@ -168,6 +170,9 @@ TEST(SessionStandstill, NobodyFeelsAPictureOfBefore) {
     EXPECT_LE(ends.worst_lead(), 100) << of.name();
     EXPECT_LE(ends.frozen(), 100) << of.name();
     EXPECT_EQ(ends.most(), 1) << of.name() << ": all of the force again";
+    if (of.clock == Clock::runs) {
+      EXPECT_LE(ends.worst_offset(), 40) << of.name() << ": what waited in the meantime tells nothing";
+    }
     EXPECT_NEAR(static_cast<double>(ends.lag()), static_cast<double>(usual), 60) << of.name();
     ends.run(15'000);
     EXPECT_NEAR(static_cast<double>(ends.lag()), static_cast<double>(usual), 35) << of.name() << ", later";
