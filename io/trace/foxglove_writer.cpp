@@ -8,7 +8,9 @@
 #include <utility>
 
 #include <tactus/base/rule.h>
+#include <tactus/trace/cdr.h>
 #include <tactus/trace/mcap_writer.h>
+#include <tactus/trace/message_schemas.h>
 #include <tactus/trace/messages.h>
 #include <tactus/trace/ros_definitions.h>
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include <tactus/trace/cdr.h>
+#include <tactus/trace/message_schemas.h>
 #include <tactus/trace/missing.h>
 
 namespace tactus {

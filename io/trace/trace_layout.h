@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <tactus/trace/frame.h>
-#include <tactus/trace/messages.h>
+#include <tactus/trace/message_schemas.h>
 
 namespace tactus {
 

@@ -10,6 +10,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/base/text.h>
 #include <tactus/trace/mcap_writer.h>
+#include <tactus/trace/message_schemas.h>
 #include <tactus/trace/messages.h>
 #include <tactus/trace/trace_bounds.h>
 #include <tactus/trace/trace_capture.h>

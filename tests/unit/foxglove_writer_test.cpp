@@ -7,6 +7,7 @@
 #include <string>
 
 #include <tactus/trace/byte_source.h>
+#include <tactus/trace/cdr.h>
 #include <tactus/trace/foxglove_writer.h>
 #include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/messages.h>

@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include <tactus/trace/cdr.h>
 #include <tactus/trace/mcap_writer.h>
+#include <tactus/trace/message_schemas.h>
 #include <tactus/trace/messages.h>
 #include <tactus/trace/ros_messages.h>
 #include "tests/unit/trace_fixture.h"

@@ -8,6 +8,7 @@
 #include <tactus/base/bytes.h>
 #include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/mcap_writer.h>
+#include <tactus/trace/message_schemas.h>
 #include <tactus/trace/messages.h>
 #include "tests/unit/trace_fixture.h"
 

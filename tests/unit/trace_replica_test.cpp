@@ -7,6 +7,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/receiver.h>
 #include <tactus/trace/mcap_writer.h>
+#include <tactus/trace/message_schemas.h>
 #include <tactus/trace/messages.h>
 #include "tests/unit/trace_fixture.h"
 

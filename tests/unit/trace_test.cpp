@@ -7,8 +7,10 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/trace/byte_source.h>
+#include <tactus/trace/cdr.h>
 #include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/mcap_writer.h>
+#include <tactus/trace/message_schemas.h>
 #include <tactus/trace/messages.h>
 #include "tests/unit/rule_fixture.h"
 #include "tests/unit/trace_fixture.h"
