@@ -31,8 +31,8 @@ function(tactus_install)
   write_basic_package_version_file(tactusConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_BINARY_DIR}/tactusConfig.cmake ${PROJECT_BINARY_DIR}/tactusConfigVersion.cmake
     DESTINATION ${config_dir})
-  install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libtactus-dev COMPONENT development)
-  install(DIRECTORY spec examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libtactus-dev COMPONENT development
+  install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libtactus-dev COMPONENT development)
+  install(DIRECTORY spec docs examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libtactus-dev COMPONENT development
     PATTERN "*.md" PATTERN "*.csv" PATTERN "*.cpp" PATTERN "*.c" PATTERN "*.py" PATTERN "*.mjs"
     PATTERN "make.py" EXCLUDE PATTERN "tools" EXCLUDE PATTERN "__pycache__" EXCLUDE PATTERN "CMakeLists.txt" EXCLUDE)
 endfunction()

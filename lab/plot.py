@@ -29,6 +29,7 @@ compare or tolerable wrote. Of a long recording a line shows the extremes.
 examples:
   tactus plot push.mcap -o push.svg
   tactus plot plain.mcap helped.mcap --label "no compensation" --label "with compensation" -o both.pdf
+  tactus plot plain.mcap helped.mcap --panel "force on" --line felt -o forces.svg
   tactus encode push.mcap -o a.tct -p 4% --plot a.json && tactus encode push.mcap -o b.tct -p 8% --plot b.json
   tactus plot a.json b.json -o errors.png"""
 
@@ -56,6 +57,8 @@ def command_line():
     made.add_argument("--label", action="append", default=[], metavar="TEXT",
                       help="Of the first FILE in the legend, then of the next one [the file's name]")
     made.add_argument("--title", metavar="TEXT", help="Above the figure [of one FILE its name]; '' for none")
+    made.add_argument("--panel", action="append", default=[], metavar="TEXT", help="Draw only panels with this in their label; may be repeated [all]")
+    made.add_argument("--line", action="append", default=[], metavar="NAME", help="Of panels with several lines draw only these; may be repeated [all]")
     made.add_argument("--check", action="store_true", help="Only look whether figures can be drawn here")
     made.parse_args = made.parse_intermixed_args  # files on both sides of an option
     return made
@@ -247,6 +250,21 @@ def set_x(axes, runs):
         axes.set_xlim(0, max(known, default=0) or 1)
 
 
+def selected(runs, options):
+    """Those panels and lines that --panel and --line ask for.   raises Refusal"""
+    for text in options.panel:
+        if not any(text in label for run in runs for label in run.panels):
+            raise Refusal(f"--panel {printable(text)}: there is no such panel", "There are: " + ", ".join(printable(label) for label in panels_of(runs)),
+                          arguments.USAGE)
+
+    def of(panel):
+        lines = {name: line for name, line in panel.lines.items() if name in options.line or len(panel.lines) < 2 or not options.line}
+        return panel._replace(lines=dict(zip(options.line, lines.values())) if options.line and len(lines) == 1 else lines)  # nothing to tell apart
+    chosen = [{label: of(panel) for label, panel in run.panels.items() if not options.panel or any(text in label for text in options.panel)}
+              for run in runs]
+    return [run._replace(panels={label: panel for label, panel in panels.items() if panel.lines}) for run, panels in zip(runs, chosen)]
+
+
 def check_together(runs):
     if len(runs) > 1 and any(run.surface or run.x_label != runs[0].x_label for run in runs):
         raise Refusal("these files do not share an axis", "Draw each in a figure of its own.")
@@ -272,6 +290,9 @@ def work(options):
     check_arguments(options)
     runs = [read(path, options)._replace(name=label) for path, label in zip(options.files, labels_of(options))]
     check_together(runs)
+    runs = runs if runs[0].surface else selected(runs, options)
+    if not runs[0].surface and not panels_of(runs):
+        raise Refusal("no line is left to draw", "Give --line a name that the legend of the whole figure has.", arguments.USAGE)
     title = options.title if options.title is not None else "" if len(runs) > 1 else printable(runs[0].heading)
     drawn = surface.draw(runs[0].surface, title) if runs[0].surface else draw(runs, title)
     figure.save(drawn, options.output, options.force)

@@ -213,13 +213,13 @@ def check_stems(root):
                 yield f"codec/{stem}: no tests/{kind}/*_{kind}.cpp has its name or includes a header of it"
 
 
-def check_readme(root):
-    """Each line of the README's tree starts with a path, indented two spaces per level; the text after it is free."""
-    readme = root / "README.md"
-    text = readme.read_text(encoding="utf-8") if readme.is_file() else ""
+def check_tree(root):
+    """Each line of the tree in CONTRIBUTING.md starts with a path, indented two spaces per level; the text after it is free."""
+    page = root / "CONTRIBUTING.md"
+    text = page.read_text(encoding="utf-8") if page.is_file() else ""
     block = re.search(r"^## Tree\s*\n+```[^\n]*\n(.*?)^```", text, re.M | re.S)
     if not block:
-        yield "README.md: no fenced block under a heading '## Tree'"
+        yield "CONTRIBUTING.md: no fenced block under a heading '## Tree'"
         return
     parents = []
     for line in block.group(1).splitlines():
@@ -232,10 +232,10 @@ def check_readme(root):
         parents[level:] = [entry.group(2)]
         path = root.joinpath(*parents)
         if not path.exists():
-            yield f"README.md: the tree names {path.relative_to(root)}, which is not there"
+            yield f"CONTRIBUTING.md: the tree names {path.relative_to(root)}, which is not there"
 
 
-CHECKS = (check_sources, check_integers, check_system, check_sides, check_units, check_stems, check_readme)
+CHECKS = (check_sources, check_integers, check_system, check_sides, check_units, check_stems, check_tree)
 
 
 def findings(root):
@@ -245,7 +245,7 @@ def findings(root):
 def self_test():
     spdx = "// SPDX-License-Identifier: Apache-2.0\n"
     good = {
-        "README.md": "## Tree\n\n```\ncodec/          the library\n  rigid/        bodies\n                  that are stiff\nspec/           text\n```\n",
+        "CONTRIBUTING.md": "## Tree\n\n```\ncodec/          the library\n  rigid/        bodies\n                  that are stiff\nspec/           text\n```\n",
         "spec/40-rigid.md": "",
         "codec/rigid/rigid.h": spdx,
         "codec/rigid/rigid_encoder.h": spdx + '#include <tactus/rigid/rigid.h>\n',
@@ -271,7 +271,7 @@ def self_test():
         "tests/unit/rigid_state_test.cpp": [(spdx, "stands in TESTED_BY all the same")],
         "tests/fuzz/packet_fuzz.cpp": [(None, "no tests/fuzz"), (spdx, "no tests/fuzz")],
         "tests/bench/rigid_bench.cpp": [(None, "no tests/bench")],
-        "README.md": [(None, "no fenced block"), ("## Tree\n```\ncodec/\n  mesh/   gone\n```\n", "names codec/mesh")],
+        "CONTRIBUTING.md": [(None, "no fenced block"), ("## Tree\n```\ncodec/\n  mesh/   gone\n```\n", "names codec/mesh")],
     }
     cases = [({}, None)] + [({name: text}, word) for name, changes in bad.items() for text, word in changes]
     failed = 0

@@ -136,7 +136,7 @@ Value stream_info_value(const Player& player, const StreamTotals& totals, std::u
            {"stream", stream_value(report)}};
   if (end.error) out["broken"] = {{"byte", end.error->bit_offset / 8}, {"rule", end.error->rule}};
   if (report.traffic) {
-    out["profile"] = "thesis";
+    out["profile"] = h.is_eased ? "main" : "thesis";
     out["traffic"] = without_shares(Json(rigid_traffic_value(report)));
     out["grid_levels"] = totals.levels;
     if (totals.rigid.packets > 0) {

@@ -10,10 +10,11 @@ from tools.book import Book
 from tools.markdown import slug
 from tools.page import SHARED_STYLE, html_page
 
-START = ("README.md", "SECURITY.md", "LICENSE", "conformance/README.md", "sim/scenes/README.md", "examples", "reports")
+START = ("README.md", "docs", "CONTRIBUTING.md", "CHANGELOG.md", "CODE_OF_CONDUCT.md", "SECURITY.md", "LICENSE",
+         "conformance/README.md", "sim/scenes/README.md", "examples", "reports")
 SPECIFICATION = pathlib.PurePosixPath("spec/index.html")
 COPIED = {".svg", ".png", ".csv", ".json", ".toml", ".txt", ".tct"}  # shown or saved by the browser as they are
-NAV = (("index.html", "Tactus"), ("examples/index.html", "Examples"), ("api/index.html", "Libraries"),
+NAV = (("index.html", "Tactus"), ("docs/index.html", "Guides"), ("examples/index.html", "Examples"), ("api/index.html", "Libraries"),
        (str(SPECIFICATION), "Specification"), ("reports/index.html", "Reports"))
 STYLE = SHARED_STYLE + """
 main { max-width: 62rem; margin: 0 auto; padding: 1rem 1rem 6rem; overflow-wrap: break-word; }
