@@ -74,7 +74,7 @@ tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const
 }
 
 constexpr double kMostTicks = 0xffffffff;     // of a stream: spec/20-scene.md
-constexpr std::uint32_t kEstimateEvery = 50;  // deformations between looks at their error
+constexpr std::uint32_t kEstimateEvery = 19;  // deformations between looks at their error: no beat with what repeats
 
 struct Run {
   sim::Simulation simulation;
@@ -88,6 +88,7 @@ struct Run {
   sim::SessionNetwork* network = nullptr;
   std::optional<MotionFigure> figure;
   std::vector<SimCheck> checks;  // finer runs beside it
+  CheckedTick checked;           // for them
 };
 
 /// One tick, by the scene's hands or by the recording.
@@ -194,11 +195,13 @@ Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report
         break;
       }
     }
+    if (!run.checks.empty()) run.checked.begin(run.simulation);
     const auto packet = step(run, options, report.timings[0].times);
     if (!packet) return refuse_after(packet.error(), run, report);
     if (report.timings.size() > 1) add_deformations(run, report.timings[1].times);
     TACTUS_CHECK(record(run, *packet, options, report));
-    for (SimCheck& check : run.checks) TACTUS_CHECK(check.add(run.simulation.frame()));
+    if (!run.checks.empty()) run.checked.end(run.simulation.frame());
+    for (SimCheck& check : run.checks) TACTUS_CHECK(check.add(run.checked));
     progress.update(report.ticks.count());
   }
   return finish(run, options);
@@ -260,8 +263,8 @@ void report_errors(const sim::Simulation& simulation, Report& report) {
     const auto error = simulation.deformables()->error(i);
     if (!error || error->samples == 0) continue;
     report.deformables[i].samples = static_cast<std::uint64_t>(error->samples);
-    report.deformables[i].error_p50 = error->p50;
-    report.deformables[i].error_max = error->max;
+    report.deformables[i].error_of_motion = error->of_motion;
+    report.deformables[i].error_most = error->most_of_motion;
     report.deformables[i].energy_gained = error->energy;
   }
 }
@@ -307,6 +310,27 @@ tl::expected<sim::NetworkOptions, Failure> network_of(const SimOptions& options,
   out.uplink = options.uplink.value_or(out.downlink);
   out.playout.fixed = playout_of(options.playout);
   return out;
+}
+
+/// [s] there and back; its usual part.
+double round_trip_of(const sim::NetworkOptions& network) {
+  double sum = 0;
+  for (const sim::LinkOptions* link : {&network.downlink, &network.uplink})
+    sum += 1e-6 * static_cast<double>(link->delay + link->gamma_mean + link->jitter / 2);
+  return sum;
+}
+
+constexpr double kFarForTwo =
+    0.08;  // [s] of round trip: the first at which two who simulate one object were seen to swing is 0.1
+
+void warn_of_two(const sim::NetworkOptions& network, const sim::Scene& scene) {
+  const std::string object = shared_object(scene);
+  if (object.empty() || round_trip_of(network) < kFarForTwo) return;
+  fmt::print(
+      stderr,
+      "warning: {}: with --compensation simulation two users who push one object against each other may make it swing at a "
+      "round trip of {:.0f} ms. Give --compensation stiffness, or max_damping = 50 in [touch]\n",
+      object, 1e3 * round_trip_of(network));
 }
 
 /// The network of a simulation, once that is made, and the capture of its datagrams.
@@ -359,7 +383,9 @@ tl::expected<sim::SimulationOptions, Failure> settings_of(const SimOptions& opti
   if (options.has_channel())
     out.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica,
                                       options.meshes.coding(options.triggers), options.told};
-  if (options.has_network()) TACTUS_CHECK(add_network(options, scene, networked, *out.channel));
+  if (!options.has_network()) return out;
+  out.channel->timed = true;
+  TACTUS_CHECK(add_network(options, scene, networked, *out.channel));
   return out;
 }
 
@@ -371,6 +397,7 @@ struct FinerRun {
   std::optional<sim::Simulation> simulation{};
   std::optional<TraceReader> recording{};
   TraceFrame recorded{};
+  CheckedTick now{};
   std::int64_t left;  // ticks
 
   Outcome begin(int parts) {
@@ -387,15 +414,18 @@ struct FinerRun {
     return {};
   }
 
-  const TraceFrame* step() {
+  const CheckedTick* step() {
     if (left-- == 0) return nullptr;
     if (recording) {
       const auto more = next_frame(*recording, recorded, options.replay);
       if (!more || !*more) return nullptr;
     }
+    now.begin(*simulation);
     const auto stepped = recording ? simulation->step(recorded_devices(*recording, recorded)) : simulation->step();
     if (!stepped) fmt::print(stderr, "tactus: --check: {}: {}\n", options.scene, printable(to_string(stepped.error())));
-    return stepped ? &simulation->frame() : nullptr;
+    if (!stepped) return nullptr;
+    now.end(simulation->frame());
+    return &now;
   }
 };
 
@@ -433,6 +463,10 @@ Outcome run(const SimOptions& options) {
   note_idle_options(*options.common.command, subjects_of(scene), "scene");
   Networked networked;
   TACTUS_TRY(const auto settings, settings_of(options, scene, networked));
+  if (options.has_network()) {
+    TACTUS_TRY(const auto network, network_of(options, scene));
+    warn_of_two(network, scene);
+  }
   auto simulation = sim::Simulation::create(scene, settings);
   if (!simulation) return refuse(options.scene, simulation.error());
   std::optional<TraceReader> recording;
@@ -468,10 +502,11 @@ Outcome run(const SimOptions& options) {
               {},
               {},
               {},
+              {},
               {}};
   if (!options.plot.empty()) session.figure.emplace(info);
   if (networked.network != nullptr) {
-    session.judge.emplace(info, options.triggers, options.meshes);
+    session.judge.emplace(info, scene, options.triggers, options.meshes);
     session.network = networked.network;
   }
   const auto ticks = options.duration < 0 ? session.simulation.ticks()
@@ -481,7 +516,7 @@ Outcome run(const SimOptions& options) {
     if (report.ticks.count() == 0) session.output.discard();
     return done;
   }
-  report_touches(scene, session.simulation, report);
+  report_touches(scene, session.simulation, options.has_network(), report);
   report_rigid(scene, session.simulation.rigid_errors(), report);
   if (session.judge) report.networks = session.judge->finish(*session.network);
   else if (options.has_channel()) report.stream = stream_size(session);

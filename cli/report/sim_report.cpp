@@ -17,6 +17,7 @@ namespace tactus::cli {
 
 namespace {
 
+constexpr double kCalms = 20;          // [N s/m] of damping, from which on two at one object were stable up to 150 ms
 constexpr std::uint32_t kByHand = 10;  // contacts that a hand makes in a second: tapping ends at about seven
 
 void warn_of_chatter(const TouchReport& touch, Report& report) {
@@ -47,9 +48,46 @@ void warn_of_deformation(const sim::Scene& scene, const SurfaceContact& hardest,
       object.name, sum, *bears, 1e3 * object.rate * sim::kTick));
 }
 
+constexpr double kSwing = 0.5e-3;   // [m], above what tremor makes
+constexpr double kTremors = 6;      // times its RMS
+constexpr double kOvershoot = 1.5;  // times the server's force, and
+constexpr double kOverForce = 1;    // [N]
+
+/// In the loops measured, stable ones swing by at most 0.3 mm and unstable ones by 1 mm and more.
+void warn_of_swing(const sim::Scene& scene, std::size_t user, const TouchReport& touch, bool has_network, Report& report) {
+  if (touch.swing <= kSwing + kTremors * scene.users[user].tremor) return;
+  const bool simulates = scene.compensation && scene.compensation->method == sim::CompensationMethod::simulation;
+  report.warnings.push_back(
+      fmt::format("{}: the hand swung by {:.2g} mm where it was to hold still: {}", touch.user, 1e3 * touch.swing,
+                  !has_network         ? "its loop is not stable. Give a smaller stiffness"
+                  : simulates          ? "with this delay the loop is not stable, and the clients' simulations feed it. Give "
+                                         "--compensation stiffness, or max_damping = 50 in [touch]"
+                  : scene.compensation ? "with this delay the loop is not stable. Give max_damping = 50 in [touch]"
+                                       : "with this delay the loop is not stable. Give --compensation stiffness"));
+}
+
+void warn_of_overshoot(const sim::Scene& scene, const TouchReport& touch, bool has_network, Report& report) {
+  if (!has_network || !scene.compensation || scene.compensation->method != sim::CompensationMethod::stiffness) return;
+  if (touch.largest_force <= kOvershoot * touch.largest_server_force + kOverForce) return;
+  report.warnings.push_back(fmt::format(
+      "{}: it felt up to {:.1f} N where the server's force is at most {:.1f} N: softer rendering overshoots if little "
+      "resists. Give --compensation simulation",
+      touch.user, touch.largest_force, touch.largest_server_force));
+}
+
 }  // namespace
 
-void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, Report& report) {
+std::string shared_object(const sim::Scene& scene) {
+  if (!scene.compensation || scene.compensation->method != sim::CompensationMethod::simulation) return {};
+  if (scene.touch && scene.touch->max_damping >= kCalms) return {};
+  for (std::size_t object = 0; object < scene.objects.size(); ++object) {
+    const auto there = std::ranges::count(scene.users, object, &sim::SceneUser::object);
+    if (there > 1 && scene.objects[object].dof != Dof::none) return scene.objects[object].name;
+  }
+  return {};
+}
+
+void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, bool has_network, Report& report) {
   if (report.ticks.count() == 0) return;
   std::vector<bool> looked(scene.deformables.size());
   for (std::size_t i = 0; i < scene.users.size(); ++i) {
@@ -59,8 +97,12 @@ void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, 
                               .contacts = t.contacts,
                               .most_in_a_second = t.most_in_a_second,
                               .largest_force = t.largest_force,
+                              .largest_server_force = t.largest_server_force,
+                              .swing = t.swing,
                               .lowest_energy = t.lowest_energy});
     warn_of_chatter(report.touches.back(), report);
+    warn_of_swing(scene, i, report.touches.back(), has_network, report);
+    warn_of_overshoot(scene, report.touches.back(), has_network, report);
     warn_of_sampling(scene, simulation, i, report);
     if (!t.hardest || looked[t.hardest->mesh]) continue;
     looked[t.hardest->mesh] = true;
@@ -143,8 +185,9 @@ constexpr std::size_t kKept = 4096;  // [ticks] of truth: more than any client l
 
 }  // namespace
 
-NetworkJudge::NetworkJudge(const TraceInfo& info, const TriggerArguments& triggers, const MeshArguments& meshes)
-    : past_(kKept), info_(info) {
+NetworkJudge::NetworkJudge(const TraceInfo& info, const sim::Scene& scene, const TriggerArguments& triggers,
+                           const MeshArguments& meshes)
+    : compensates_(scene.compensation.has_value()), past_(kKept), info_(info) {
   for (const TraceUser& user : info.users) {
     users_.push_back({.report = {.user = user.name, .errors = ErrorMetrics(info, triggers.triggers())}});
     for (std::size_t i = 0; i < info.meshes.size(); ++i) {
@@ -165,6 +208,11 @@ void NetworkJudge::add(const sim::Simulation& simulation, sim::SessionNetwork& n
     for (std::size_t m = 0; m < user.shapes.size(); ++m)
       if (now.meshes[m].updated) user.shapes[m].add(now.tick, now.meshes[m].displacements, touch_of(now, m));
     if (simulation.share_rendered(i) < 1) ++report.without_force;
+    const sim::ClientCosts& costs = simulation.client_costs(i);
+    const auto add = [](StepTimes& times, const sim::ClientCosts::Cost& cost) { times.add({cost.wall, cost.cpu}); };
+    if (!user.shapes.empty()) add(report.shapes, costs.shapes);
+    if (!info_.objects.empty()) add(report.poses, costs.poses);
+    if (compensates_) add(report.compensation, costs.compensation);
     const TraceFrame* const truth = past_.at(simulation.shown_tick(i));
     if (truth == nullptr) {
       ++report.not_shown;

@@ -72,7 +72,9 @@ Vec3 RigidWorld::Impl::velocity_without_contact(const Body* body, const Vec3& po
 
 void RigidWorld::Impl::begin(Body& body) const {
   body.before = sample(body);
-  body.stepped = motion_of(body.handle);
+  const Motion now = motion_of(body.handle);
+  body.changed = {now.velocity - body.stepped.velocity, now.angular_velocity - body.stepped.angular_velocity};
+  body.stepped = now;
   body.free = motion_without_contact(body);
   add_forces(body);
 }

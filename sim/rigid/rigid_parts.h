@@ -5,6 +5,7 @@
 #include <ode/ode.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstdint>
 #include <optional>
@@ -120,6 +121,7 @@ struct Body {
   std::uint32_t island = 0;  // representative of its group; kFloor: it touches nothing
   RigidSample before;        // this step
   Motion stepped, free;      // velocities before it, as stepped, and after it if nothing touched the body
+  Motion changed;            // what the step before it made of them
   Vec3 swept_from;           // [m] where it is, while it is looked for elsewhere
   Pose kept_pose;            // after an attempt to step it
   Motion kept_motion;
@@ -129,6 +131,18 @@ struct Body {
   std::optional<double> flight;  // [J] energy since when it touches nothing
   RigidWorld::Load load;         // of it
 };
+
+/// Velocities at the tick: on by half a step from those of half a step before, but not through an impact.
+inline Motion motion_at_tick(const Body& body) {
+  const auto lesser = [](double a, double b) { return a * b <= 0 ? 0 : std::abs(a) < std::abs(b) ? a : b; };
+  const auto at_tick = [&](const Vec3& now, const Vec3& before, const Vec3& changed) {
+    const Vec3 change = now - before;
+    return now + 0.5 * Vec3{lesser(change.x, changed.x), lesser(change.y, changed.y), lesser(change.z, changed.z)};
+  };
+  const auto [v, w] = motion_of(body.handle);
+  return {at_tick(v, body.stepped.velocity, body.changed.velocity),
+          at_tick(w, body.stepped.angular_velocity, body.changed.angular_velocity)};
+}
 
 /// Two bodies near each other and their contacts. The first body can move.
 struct Pair {
