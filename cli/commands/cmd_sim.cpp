@@ -575,7 +575,7 @@ void setup_sim(Command& app, Action& action) {
       ->type_name("FILE");
   command.add_flag("--check", options->check,
                    "Simulate the same again beside it with half the step, and with a shape in each tick, and tell the difference "
-                   "[costs two to four times the time]");
+                   "in motion, shapes, forces, energies and the work of hands [costs two to four times the time]");
   command.add_flag("--codec", options->codec,
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");

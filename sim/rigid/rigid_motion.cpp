@@ -72,9 +72,7 @@ Vec3 RigidWorld::Impl::velocity_without_contact(const Body* body, const Vec3& po
 
 void RigidWorld::Impl::begin(Body& body) const {
   body.before = sample(body);
-  const Motion now = motion_of(body.handle);
-  body.changed = {now.velocity - body.stepped.velocity, now.angular_velocity - body.stepped.angular_velocity};
-  body.stepped = now;
+  body.stepped = motion_of(body.handle);
   body.free = motion_without_contact(body);
   add_forces(body);
 }
@@ -90,6 +88,10 @@ void RigidWorld::Impl::end(Body& body) {
   project(body);
   stand_still(body);
   body.starts = body.stands;
+  const Motion now = motion_of(body.handle);
+  body.change_before = body.change;
+  body.change = {(1 / body.share) * (now.velocity - body.stepped.velocity),
+                 (1 / body.share) * (now.angular_velocity - body.stepped.angular_velocity)};
   judge_drift(body);
   judge_flight(body);
 }
