@@ -312,27 +312,6 @@ tl::expected<sim::NetworkOptions, Failure> network_of(const SimOptions& options,
   return out;
 }
 
-/// [s] there and back; its usual part.
-double round_trip_of(const sim::NetworkOptions& network) {
-  double sum = 0;
-  for (const sim::LinkOptions* link : {&network.downlink, &network.uplink})
-    sum += 1e-6 * static_cast<double>(link->delay + link->gamma_mean + link->jitter / 2);
-  return sum;
-}
-
-constexpr double kFarForTwo =
-    0.08;  // [s] of round trip: the first at which two who simulate one object were seen to swing is 0.1
-
-void warn_of_two(const sim::NetworkOptions& network, const sim::Scene& scene) {
-  const std::string object = shared_object(scene);
-  if (object.empty() || round_trip_of(network) < kFarForTwo) return;
-  fmt::print(
-      stderr,
-      "warning: {}: with --compensation simulation two users who push one object against each other may make it swing at a "
-      "round trip of {:.0f} ms. Give --compensation stiffness, or max_damping = 50 in [touch]\n",
-      object, 1e3 * round_trip_of(network));
-}
-
 /// The network of a simulation, once that is made, and the capture of its datagrams.
 struct Networked {
   sim::SessionNetwork* network = nullptr;

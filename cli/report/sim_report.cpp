@@ -77,8 +77,7 @@ void warn_of_undershoot(const sim::Scene& scene, const TouchReport& touch, bool 
                   touch.user, touch.largest_force, touch.largest_server_force));
 }
 
-}  // namespace
-
+/// An object at which several users are, whose clients simulate it without enough damping for long delays; empty: there is none.
 std::string shared_object(const sim::Scene& scene) {
   if (!scene.compensation || scene.compensation->method != sim::CompensationMethod::simulation) return {};
   if (scene.touch && scene.touch->max_damping >= kCalms) return {};
@@ -87,6 +86,28 @@ std::string shared_object(const sim::Scene& scene) {
     if (there > 1 && scene.objects[object].dof != Dof::none) return scene.objects[object].name;
   }
   return {};
+}
+
+/// [s] there and back; its usual part.
+double round_trip_of(const sim::NetworkOptions& network) {
+  double sum = 0;
+  for (const sim::LinkOptions* link : {&network.downlink, &network.uplink})
+    sum += 1e-6 * static_cast<double>(link->delay + link->gamma_mean + link->jitter / 2);
+  return sum;
+}
+
+constexpr double kFarForTwo = 0.08;  // [s] of round trip at which two who squeeze a cube were first seen to swing
+
+}  // namespace
+
+void warn_of_two(const sim::NetworkOptions& network, const sim::Scene& scene) {
+  const std::string object = shared_object(scene);
+  if (object.empty() || round_trip_of(network) < kFarForTwo) return;
+  fmt::print(
+      stderr,
+      "warning: {}: with --compensation simulation two users who push one object against each other may make it swing at a "
+      "round trip of {:.0f} ms. Give --compensation stiffness, or max_damping = 50 in [touch]\n",
+      object, 1e3 * round_trip_of(network));
 }
 
 void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, bool has_network, Report& report) {

@@ -18,6 +18,7 @@ class Simulation;
 }  // namespace tactus::sim
 
 namespace tactus::sim {
+struct NetworkOptions;
 class SessionNetwork;
 class Simulation;
 }  // namespace tactus::sim
@@ -33,8 +34,8 @@ struct Report;
 /// the place of the largest force, or was held by a coupling that its device's smoothing makes swing.
 /// in   has_network  the clients are behind one
 void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, bool has_network, Report& report);
-/// An object at which several users are, whose clients simulate it without enough damping for long delays; empty: there is none.
-std::string shared_object(const sim::Scene& scene);
+/// Warns on standard error of two users at one object who simulate it at a distance where they may swing.
+void warn_of_two(const sim::NetworkOptions& network, const sim::Scene& scene);
 
 // ==== rigid report ====
 
