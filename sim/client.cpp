@@ -2,6 +2,8 @@
 #include <tactus/sim/client.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <ctime>
 #include <utility>
 
 #include <tactus/load/load_state.h>
@@ -76,7 +78,41 @@ Vec3 centre(const TriMesh& mesh) {
   return 0.5 * (low + high);
 }
 
+ClientCosts::Cost time_now() noexcept {
+  timespec wall{}, cpu{};
+  clock_gettime(CLOCK_MONOTONIC, &wall);
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &cpu);
+  const auto ns = [](const timespec& t) { return std::int64_t{1'000'000'000} * t.tv_sec + t.tv_nsec; };
+  return {ns(wall), ns(cpu)};
+}
+
+/// Of two readings of the clocks, the least of some.
+ClientCosts::Cost cost_of_reading() noexcept {
+  ClientCosts::Cost least{INT64_MAX, INT64_MAX};
+  for (int i = 0; i < 100; ++i) {
+    const ClientCosts::Cost before = time_now(), after = time_now();
+    least = {std::min(least.wall, after.wall - before.wall), std::min(least.cpu, after.cpu - before.cpu)};
+  }
+  return least;
+}
+
 }  // namespace
+
+template <class Work>
+auto Client::measured(ClientCosts::Cost& cost, Work&& work) noexcept {
+  if (!measures_) return work();
+  static const ClientCosts::Cost reading = cost_of_reading();
+  struct Added {
+    ClientCosts::Cost& to;
+    ClientCosts::Cost before = time_now();
+    ~Added() {
+      const ClientCosts::Cost after = time_now();
+      to.wall += std::max<std::int64_t>(0, after.wall - before.wall - reading.wall);
+      to.cpu += std::max<std::int64_t>(0, after.cpu - before.cpu - reading.cpu);
+    }
+  } const added{cost};
+  return work();
+}
 
 Client::Client(Server& server, std::optional<Receiver> receiver)
     : scene_(server.scene()),
@@ -149,6 +185,7 @@ void Client::show(const TraceFrame& truth) noexcept {
 }
 
 void Client::show(Receiver& receiver, std::int64_t tick) noexcept {
+  costs_ = {};
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     ShownMesh& mesh = shown_[i];
     const auto frame = static_cast<std::int64_t>(static_cast<double>(tick) / mesh.period);
@@ -158,13 +195,13 @@ void Client::show(Receiver& receiver, std::int64_t tick) noexcept {
     mesh.frame = frame;
     show_shape(receiver, tick, i);
   }
-  show_poses(receiver, tick);
+  measured(costs_.poses, [&] { show_poses(receiver, tick); });
   shown_by_ = &receiver;
   shown_tick_ = tick;
 }
 
 void Client::show_shape(Receiver& receiver, std::int64_t tick, std::size_t mesh) noexcept {
-  const auto displacements = receiver.replica().displacements(mesh, tick);
+  const auto displacements = measured(costs_.shapes, [&] { return receiver.replica().displacements(mesh, tick); });
   const unsigned exp = receiver.scene()->grid.position;
   if (!prediction_) return deformables_->show(mesh, displacements, exp);
   prediction_->hear(mesh, displacements, exp, tick);
@@ -211,7 +248,7 @@ Vec3 Client::soften(std::size_t user, const Touch& touch, const Vec3& device, st
     shown.pose = poses_[object];
     shown.moves = moves_[object];
   }
-  const Vec3 force = compensation_->soften(user, touch, device, shown, delay);
+  const Vec3 force = measured(costs_.compensation, [&] { return compensation_->soften(user, touch, device, shown, delay); });
   stiffness_[user] = compensation_->stiffness(user);
   return force;
 }
@@ -222,7 +259,7 @@ void Client::touch(std::size_t user, const DeviceSample& device, const Rendering
   contacts_[user].reset();
   stiffness_[user] = 0;
   if (compensation_) compensation_->move(user, device);
-  if (prediction_) predict(user, how.delay);
+  if (prediction_) measured(costs_.compensation, [&] { predict(user, how.delay); });
   for (Touchable* objects : objects_) {
     const Touch touch = objects->touch(user, device, held);
     if (touch.contact.kind != ContactKind::none) contacts_[user] = {touch.proxy, touch.contact.stiffness};
@@ -233,7 +270,7 @@ void Client::touch(std::size_t user, const DeviceSample& device, const Rendering
     force = force + (compensation_ && presses ? soften(user, touch, device.position, how.delay) : touch.force);
   }
   if (compensation_ && !contacts_[user]) compensation_->release(user);
-  if (prediction_) prediction_->step(device);
+  if (prediction_) measured(costs_.compensation, [&] { prediction_->step(device); });
   felt_[user] = how.share * share_rendered(force, scene_.users[user].device.max_force) * force;
   if (ports_.empty()) return;
   const Vec3 passive = ports_[user].limit(device.position, felt_[user]);

@@ -103,6 +103,10 @@ class Client {
   /// What the user's device felt in the last touch(), if anything.
   const std::optional<DeviceContact>& contact(std::size_t user) const noexcept { return contacts_[user]; }
 
+  /// Measure costs() from now on.
+  void measure() noexcept { measures_ = true; }
+  const ClientCosts& costs() const noexcept { return costs_; }  ///< of the last tick that was shown to a user
+
   /// [N/m] of the spring that rendered a user's force in the last touch(); 0: of none.
   double stiffness(std::size_t user) const noexcept { return stiffness_[user]; }
   const Vec3& felt(std::size_t user) const noexcept { return felt_[user]; }  ///< [N] rendered in the last touch()
@@ -120,6 +124,8 @@ class Client {
   void show_shape(Receiver& receiver, std::int64_t tick, std::size_t mesh) noexcept;
   void show_poses(Receiver& receiver, std::int64_t tick) noexcept;
   Vec3 soften(std::size_t user, const Touch& touch, const Vec3& device, std::uint32_t delay) noexcept;
+  template <class Work>
+  auto measured(ClientCosts::Cost& cost, Work&& work) noexcept;
 
   const Scene& scene_;
   std::optional<Receiver> receiver_;  // none: the truth is shown, or what a network gives
@@ -143,6 +149,8 @@ class Client {
   std::vector<Vec3> felt_;           // [N] one per user
   std::vector<std::optional<DeviceContact>> contacts_;
   std::vector<double> stiffness_;  // [N/m]
+  bool measures_ = false;
+  ClientCosts costs_;
 };
 
 }  // namespace tactus::sim

@@ -14,6 +14,11 @@
 #include <tactus/sim/user/passivity.h>
 
 namespace tactus::sim {
+namespace {
+
+constexpr double kStill = 5e-3;  // [m/s] a hand whose aim is slower holds still
+
+}  // namespace
 
 struct Simulation::Impl {
   std::uint64_t seed;
@@ -33,6 +38,7 @@ struct Simulation::Impl {
   std::vector<Hand> hands;                             // one per user, like the vectors below
   std::vector<DeviceSample> devices;                   // of the hands
   std::vector<TouchRecord> records;
+  std::vector<TouchRecord::Aim> aims;  // of the hands, in this tick
 
   tl::expected<std::span<const Packet>, Diagnostic> refuse(const Error& error) const {
     return tl::unexpected(Diagnostic{.error = error, .step = server->frame().tick});
@@ -52,6 +58,7 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
                options.channel->network(impl->server->stream_scene(), scene.users.size(), options.channel->sender));
     for (std::size_t i = 0; i < scene.users.size(); ++i) {
       TACTUS_TRY(auto client, Client::create_remote(*impl->server, i, options.channel->own ? *options.channel->own : scene));
+      if (options.channel->timed) client->measure();
       impl->clients.push_back(std::move(client));
     }
   } else {
@@ -64,6 +71,7 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   }
   impl->devices.resize(scene.users.size());
   impl->records.resize(scene.users.size());
+  impl->aims.assign(scene.users.size(), TouchRecord::Aim::unknown);
   impl->contacts.resize(scene.users.size());
   impl->shown.assign(scene.users.size(), -1);
   impl->shares.assign(scene.users.size(), 1);
@@ -74,7 +82,10 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
 /// Step 1, but for the hand of this user.
 void Simulation::Impl::move_hands(std::size_t but) noexcept {
   for (std::size_t i = 0; i < hands.size(); ++i)
-    if (i != but) devices[i] = hands[i].step(client(i).felt(i), client(i).watched(i));
+    if (i != but) {
+      devices[i] = hands[i].step(client(i).felt(i), client(i).watched(i));
+      aims[i] = hands[i].aim_speed() < kStill ? TouchRecord::Aim::rests : TouchRecord::Aim::moves;
+    }
 }
 
 tl::expected<std::span<const Packet>, Diagnostic> Simulation::step() {
@@ -134,7 +145,7 @@ tl::expected<std::span<const Packet>, Diagnostic> Simulation::step(std::span<con
   for (std::size_t i = 0; i < in.records.size(); ++i) {
     UserSample& user = in.server->frame().users[i];
     user.force = in.client(i).felt(i);
-    in.records[i].add(user);
+    in.records[i].add(user, std::exchange(in.aims[i], TouchRecord::Aim::unknown));
   }
   TACTUS_CHECK(in.server->step());  // 5
   return *packets;
@@ -155,7 +166,16 @@ std::optional<Vec3> Simulation::touched_point(std::size_t user) const noexcept {
   return contact ? std::optional(contact->proxy) : std::nullopt;
 }
 const RigidErrors& Simulation::rigid_errors() const noexcept { return std::as_const(*impl_->server).rigid().errors(); }
+
+void Simulation::energies(std::vector<double>& out) noexcept {
+  Server& server = *impl_->server;
+  out.clear();
+  for (std::uint32_t i = 0; i < server.scene().objects.size(); ++i) out.push_back(server.rigid().energy(i));
+  for (std::size_t i = 0; i < server.scene().deformables.size(); ++i) out.push_back(server.deformables()->energy(i));
+}
+
 const DeformableObjects* Simulation::deformables() const noexcept { return impl_->server->deformables(); }
+const ClientCosts& Simulation::client_costs(std::size_t user) const noexcept { return impl_->client(user).costs(); }
 const TouchSummary& Simulation::touched(std::size_t user) const noexcept { return impl_->records[user].summary(); }
 Replica& Simulation::replica() noexcept { return impl_->client(0).replica(); }
 SharedScene Simulation::stream_scene() const noexcept { return impl_->server->stream_scene(); }

@@ -18,6 +18,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <tactus/receiver.h>
 #include <tactus/sender.h>
@@ -38,6 +39,7 @@ struct ChannelOptions {
   TraceCoding coding{};        ///< of the scene's objects
   double told = 1;             ///< with a network: as ServerCodec::told
   const Scene* own = nullptr;  ///< what clients simulate themselves, if they do; null: the scene
+  bool timed = false;          ///< with a network: client_costs() are measured, about 1 us per tick and user
   NetworkMaker network{};      ///< each user has a client behind it; none: one client, and no time passes
 };
 
@@ -82,14 +84,19 @@ class Simulation {
   double round_trip(std::size_t user) const noexcept;      ///< [s] age of what is shown, as an answer to the device; 0: not known
   double stiffness(std::size_t user) const noexcept;       ///< [N/m] with which the user's force was rendered; 0: none was
   std::optional<Vec3> touched_point(
-      std::size_t user) const noexcept;                          ///< [m] proxy at the user's client; none: nothing is touched
-  Replica& replica() noexcept;                                   ///< the client's.   pre  there is a channel without network
-  std::int64_t ticks() const noexcept;                           ///< length of the scene
-  TraceInfo info() const;                                        ///< for a TraceWriter of these frames
-  SharedScene stream_scene() const noexcept;                     ///< of the packets.   pre  there is a channel
-  const DeformableObjects* deformables() const noexcept;         ///< null: the scene has none
-  const RigidErrors& rigid_errors() const noexcept;              ///< of the rigid objects
+      std::size_t user) const noexcept;                   ///< [m] proxy at the user's client; none: nothing is touched
+  Replica& replica() noexcept;                            ///< the client's.   pre  there is a channel without network
+  std::int64_t ticks() const noexcept;                    ///< length of the scene
+  TraceInfo info() const;                                 ///< for a TraceWriter of these frames
+  SharedScene stream_scene() const noexcept;              ///< of the packets.   pre  there is a channel
+  const DeformableObjects* deformables() const noexcept;  ///< null: the scene has none
+  const RigidErrors& rigid_errors() const noexcept;       ///< of the rigid objects
+  /// [J] Of all rigid objects, then of all deformable ones: kinetic and elastic energy, and gravity's since the start; after step()
+  /// those of the next tick.   time O(objects), and one evaluation of the forces per deformation   no allocation if it fits
+  void energies(std::vector<double>& out) noexcept;
   const TouchSummary& touched(std::size_t user) const noexcept;  ///< all ticks so far
+  /// Of this tick.   pre  there is a channel with a network, and it is timed
+  const ClientCosts& client_costs(std::size_t user) const noexcept;
   /// [N/m] largest stable stiffness of a coupling to a fixed point (passivity.h)
   double bears(std::size_t user) const noexcept;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include <tactus/base/diagnostic.h>
@@ -25,6 +26,16 @@ inline double share_rendered(const Vec3& force, double limit) noexcept {
   const double magnitude = norm(force);
   return magnitude > limit ? limit / magnitude : 1;
 }
+
+/// What a client computed in a tick beside decoding and rendering.
+struct ClientCosts {
+  struct Cost {
+    std::int64_t wall = 0, cpu = 0;  ///< [ns]
+  };
+  Cost shapes{};        ///< of deformable objects, elastic bodies that it steps itself included
+  Cost poses{};         ///< of rigid objects, predicted, those that its device drives included
+  Cost compensation{};  ///< of the delay
+};
 
 /// All objects of one kind at one end, with a proxy for the probe of every user.
 class Touchable {

@@ -51,7 +51,7 @@ SYSTEM = {
     "device/shared_library.cpp": "libraries that are looked for when they are needed",
     "io/net/udp.cpp": "sockets",
     "io/seal/secret_file.cpp": "a file that its owner alone reads",
-    "sim/surface/program.cpp": "a program that fills meshes",
+    "sim/surface/program.cpp": "a program that fills meshes", "cli/commands/cmd_mesh.cpp": "its CPU time",
 }
 SYSTEM_HEADER = re.compile(r"^\s*#\s*include\s+<((?:sys|net|netinet|arpa|linux)/[^>]+|unistd\.h|fcntl\.h|poll\.h|termios\.h|spawn\.h|dlfcn\.h|"
                            r"pthread\.h|sched\.h|netdb\.h|ifaddrs\.h|pwd\.h|dirent\.h|signal\.h|windows\.h)>", re.M)

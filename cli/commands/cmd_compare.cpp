@@ -9,6 +9,7 @@
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
+#include "cli/commands/replica_errors.h"
 #include "cli/figure/time_figure.h"
 #include "cli/options/contact_option.h"
 #include "cli/report/report.h"
@@ -25,61 +26,13 @@ struct CompareOptions {
   CommonOptions common;
 };
 
-Outcome check_same_scene(const CompareOptions& options, const TraceInfo& truth, const TraceInfo& replica) {
-  const auto differ = [&](const std::string& what) {
-    return refuse(shown_path(options.replica) + ": " + what + " as in " + shown_path(options.truth),
-                  "Compare a trace with the replica that was decoded from its own stream.");
-  };
-  if (truth.shows_past)
-    return refuse(shown_path(options.truth) + ": is what a client showed, not the truth", "Give the server's trace first.");
-  if (truth.tick_rate != replica.tick_rate)
-    return differ(fmt::format("the tick rate is {} Hz, not {} Hz", replica.tick_rate, truth.tick_rate));
-  if (truth.objects.size() != replica.objects.size()) {
-    return differ(fmt::format("there are {} objects, not {}", replica.objects.size(), truth.objects.size()));
-  }
-  for (std::size_t i = 0; i < truth.objects.size(); ++i) {
-    if (truth.objects[i].name != replica.objects[i].name) {
-      return differ(fmt::format("object {} is \"{}\", not \"{}\"", i, replica.objects[i].name, truth.objects[i].name));
-    }
-    if (truth.objects[i].dof != replica.objects[i].dof) {
-      return differ(fmt::format("the degrees of freedom of object \"{}\" are \"{}\", not \"{}\"", truth.objects[i].name,
-                                dof_text(replica.objects[i].dof), dof_text(truth.objects[i].dof)));
-    }
-  }
-  if (truth.meshes.size() != replica.meshes.size())
-    return differ(fmt::format("there are {} meshes, not {}", replica.meshes.size(), truth.meshes.size()));
-  for (std::size_t i = 0; i < truth.meshes.size(); ++i) {
-    const TraceDeformable &a = truth.meshes[i], &b = replica.meshes[i];
-    if (a.name != b.name) return differ(fmt::format("mesh {} is \"{}\", not \"{}\"", i, b.name, a.name));
-    if (a.rest.vertices.size() != b.rest.vertices.size() || a.rest.triangles != b.rest.triangles)
-      return differ(fmt::format("mesh \"{}\" does not have the same vertices and triangles", a.name));
-  }
-  return {};
-}
-
-/// What the replica shows, of which every tick brings only what is new.
-struct Shown {
-  std::vector<Pose> poses;
-  std::vector<std::vector<float>> shapes;  // displacements, V x 3
-
-  explicit Shown(const TraceInfo& info) : poses(info.objects.size()) {
-    for (const TraceDeformable& mesh : info.meshes) shapes.emplace_back(3 * mesh.rest.vertices.size());
-  }
-  void take(const TraceFrame& frame) {
-    for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = frame.objects[i].pose;
-    for (std::size_t i = 0; i < shapes.size(); ++i)
-      if (frame.meshes[i].updated) shapes[i] = frame.meshes[i].displacements;
-  }
-};
-
-void add(const TraceFrame& truth, const Shown& shown, Report& report, std::optional<ErrorFigure>& figure) {
-  report.fidelity->add(truth, shown.poses);
-  if (figure) figure->add(truth, shown.poses);
-  for (std::size_t i = 0; i < shown.shapes.size(); ++i) {
-    if (!truth.meshes[i].updated) continue;
-    report.meshes[i].fidelity->add(truth.meshes[i].displacements, shown.shapes[i], touch_of(truth, i));
-    if (figure) figure->add_shape(truth, i, shown.shapes[i]);
-  }
+/// What is compared goes to the figure, too.
+void add(const TraceFrame& truth, const ShownByReplica& shown, Report& report, std::optional<ErrorFigure>& figure) {
+  add_errors(truth, shown, report);
+  if (!figure) return;
+  figure->add(truth, shown.poses);
+  for (std::size_t i = 0; i < shown.shapes.size(); ++i)
+    if (truth.meshes[i].updated) figure->add_shape(truth, i, shown.shapes[i]);
 }
 
 /// One of the two traces, at its next frame.
@@ -107,7 +60,7 @@ struct Side {
 Outcome compare_all(Side& truth, Side& replica, const ContactDeclarations& contacts, const CompareOptions& options,
                     Report& report, std::optional<ErrorFigure>& figure) {
   ReadProgress progress("compare", &truth.reader, options.common.progress());
-  Shown shown(truth.reader.info());
+  ShownByReplica shown(truth.reader.info());
   TACTUS_CHECK(truth.advance());
   TACTUS_CHECK(replica.advance());
   while (truth.more || replica.more) {
@@ -146,38 +99,20 @@ tl::expected<Side, Failure> open(const std::string& path, const CompareOptions& 
   return Side{path, std::move(*reader)};
 }
 
-/// Bounds come from the options, else from the stream, else from the defaults.
-void set_bounds(const CompareOptions& options, const TraceInfo& info, const std::optional<TraceBounds>& promised,
-                Report& report) {
-  const bool is_typed = options.triggers.any_given() || options.meshes.any_given();
-  report.bounds_from = is_typed ? "options" : promised ? "stream" : "defaults";
-  const RigidTriggers rigid = promised && promised->stream.rigid ? *promised->stream.rigid : RigidTriggers{};
-  report.fidelity.emplace(info, options.triggers.over(rigid));
-  for (std::size_t i = 0; i < info.meshes.size(); ++i) {
-    const DeformableBounds bounds = promised ? promised->stream.deformables[i] : DeformableBounds{};
-    report.meshes.push_back(
-        {.name = info.meshes[i].name,
-         .vertices = info.meshes[i].rest.vertices.size(),
-         .fidelity = DeformableErrors(info.meshes[i].rest, options.meshes.over(bounds.thresholds, options.triggers),
-                                      options.meshes.rings(promised ? promised->rings[i] : DeformableObject{}.rings),
-                                      promised ? promised->position_exp : GridExponents{}.position),
-         .promised = bounds.kept || is_typed});
-  }
-}
-
 Outcome run(const CompareOptions& options) {
   TACTUS_CHECK(check_plot_option(options.plot, options.common, {options.truth, options.replica}));
   TACTUS_TRY(auto truth, open(options.truth, options));
   TACTUS_TRY(auto replica, open(options.replica, options));
   const TraceInfo& info = truth.reader.info();
-  TACTUS_CHECK(check_same_scene(options, info, replica.reader.info()));
+  TACTUS_CHECK(check_same_scene(options.truth, info, options.replica, replica.reader.info()));
 
   TACTUS_TRY(const ContactDeclarations contacts, options.contacts.of(info, options.truth));
   note_idle_options(*options.common.command, subjects_of(info), "truth");
 
   Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
   report.describe(info);
-  set_bounds(options, info, replica.reader.info().bounds, report);
+  const TypedBounds typed{options.triggers, options.meshes};
+  judge_by(&typed, info, replica.reader.info().bounds, report);
   report.timings = {{"compare"}};
   std::optional<ErrorFigure> figure;
   if (!options.plot.empty()) figure.emplace(info);

@@ -12,6 +12,7 @@
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
+#include "cli/commands/replica_errors.h"
 #include "cli/figure/time_figure.h"
 #include "cli/report/report.h"
 
@@ -37,6 +38,9 @@ class TickSource {
     source.like_.emplace(std::move(*like));
     return source;
   }
+  /// The trace whose ticks are written, and what it holds in the last one that next() told; null: there is none.
+  const TraceReader* like() const noexcept { return like_ ? &*like_ : nullptr; }
+  const TraceFrame& truth() const noexcept { return frame_; }
   tl::expected<std::optional<std::int64_t>, Failure> next(Player& player) {
     if (like_) {
       TACTUS_TRY(const bool more, next_frame(*like_, frame_, options_->like));
@@ -87,9 +91,23 @@ tl::unexpected<Failure> refuse_at(std::int64_t tick, const Error& error, const D
   return refused;
 }
 
+/// Whether the trace whose ticks are written is the truth of this stream: then the replica is held against it.
+bool may_compare(const TraceInfo& like, const TraceInfo& replica, const DecodeOptions& options, Report& report) {
+  if (const auto same = check_same_scene(options.like, like, options.input, replica); !same) {
+    report.warnings.push_back("no errors are told: " + same.error().text);
+    return false;
+  }
+  judge_by(nullptr, like, replica.bounds, report);
+  report.timings.push_back({"compare"});
+  return true;
+}
+
 /// in   figure  may be null
-Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& options, Report& report, MotionFigure* figure) {
+Outcome decode_all(Player& player, TraceWriter& writer, const TraceInfo& info, const DecodeOptions& options, Report& report,
+                   MotionFigure* figure) {
   TACTUS_TRY(auto ticks, TickSource::create(options));
+  std::optional<ShownByReplica> shown;
+  if (ticks.like() != nullptr && may_compare(ticks.like()->info(), info, options, report)) shown.emplace(info);
   TraceFrame frame = replica_frame(player.scene());
   const auto total = options.ticks ? std::optional(static_cast<std::uint64_t>(*options.ticks)) : std::nullopt;
   Progress progress("decode", total, options.common.progress());
@@ -102,6 +120,10 @@ Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& opt
     if (const auto written = writer.write(frame); !written)
       return refuse(options.output, place_of_tick(frame.tick), written.error());
     if (figure != nullptr) figure->add(frame);
+    if (shown) {
+      shown->take(frame);
+      report.timings[1].times.measure([&] { return add_errors(ticks.truth(), *shown, report), true; });
+    }
     report.ticks.add(*tick);
     progress.update(report.ticks.count());
   }
@@ -139,7 +161,7 @@ Outcome run(const DecodeOptions& options) {
   if (report.traffic) report.client = way_of_client(options.replica.interpolation, player->scene().is_eased);
   std::optional<MotionFigure> figure;
   if (!options.plot.empty()) figure.emplace(info);
-  TACTUS_CHECK(decode_all(*player, *writer, options, report, figure ? &*figure : nullptr));
+  TACTUS_CHECK(decode_all(*player, *writer, info, options, report, figure ? &*figure : nullptr));
   const auto rest = player->next_tick();
   if (!rest && is_cut_stream(rest.error())) {
     warn_cut_stream(options.input, rest.error());
@@ -164,13 +186,19 @@ void setup_decode(Command& app, Action& action) {
       ->required()
       ->type_name("FILE");
   add_interpolation(command, options->replica);
-  Option* like = command.add_option("--like", options->like, "Write the ticks of this trace")->type_name("TRACE");
+  Option* like = command
+                     .add_option("--like", options->like,
+                                 "Write the ticks of this trace, and tell the errors against it if it is what was encoded")
+                     ->type_name("TRACE");
   command.add_option("--ticks", options->ticks, "Number of ticks to write [up to the last packet]")
       ->check(whole_number(1, 0xffffffff))
       ->excludes(like);
   add_plot_option(command, options->plot, "what the client shows, and the packets, over time");
   add_output_options(command, options->common);
   command.footer(
+      "With --like the errors are those of `tactus compare`, which also takes other bounds; only its exit status says whether "
+      "they "
+      "hold.\n"
       "Examples:\n"
       "  tactus decode push.tct -o replica.mcap --like push.mcap\n"
       "  tactus decode thesis.tct -o smooth.mcap --interpolate");

@@ -74,7 +74,7 @@ tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const
 }
 
 constexpr double kMostTicks = 0xffffffff;     // of a stream: spec/20-scene.md
-constexpr std::uint32_t kEstimateEvery = 50;  // deformations between looks at their error
+constexpr std::uint32_t kEstimateEvery = 19;  // deformations between looks at their error: no beat with what repeats
 
 struct Run {
   sim::Simulation simulation;
@@ -88,6 +88,7 @@ struct Run {
   sim::SessionNetwork* network = nullptr;
   std::optional<MotionFigure> figure;
   std::vector<SimCheck> checks;  // finer runs beside it
+  CheckedTick checked;           // for them
 };
 
 /// One tick, by the scene's hands or by the recording.
@@ -194,11 +195,13 @@ Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report
         break;
       }
     }
+    if (!run.checks.empty()) run.checked.begin(run.simulation);
     const auto packet = step(run, options, report.timings[0].times);
     if (!packet) return refuse_after(packet.error(), run, report);
     if (report.timings.size() > 1) add_deformations(run, report.timings[1].times);
     TACTUS_CHECK(record(run, *packet, options, report));
-    for (SimCheck& check : run.checks) TACTUS_CHECK(check.add(run.simulation.frame()));
+    if (!run.checks.empty()) run.checked.end(run.simulation.frame());
+    for (SimCheck& check : run.checks) TACTUS_CHECK(check.add(run.checked));
     progress.update(report.ticks.count());
   }
   return finish(run, options);
@@ -260,8 +263,8 @@ void report_errors(const sim::Simulation& simulation, Report& report) {
     const auto error = simulation.deformables()->error(i);
     if (!error || error->samples == 0) continue;
     report.deformables[i].samples = static_cast<std::uint64_t>(error->samples);
-    report.deformables[i].error_p50 = error->p50;
-    report.deformables[i].error_max = error->max;
+    report.deformables[i].error_of_motion = error->of_motion;
+    report.deformables[i].error_most = error->most_of_motion;
     report.deformables[i].energy_gained = error->energy;
   }
 }
@@ -359,7 +362,9 @@ tl::expected<sim::SimulationOptions, Failure> settings_of(const SimOptions& opti
   if (options.has_channel())
     out.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica,
                                       options.meshes.coding(options.triggers), options.told};
-  if (options.has_network()) TACTUS_CHECK(add_network(options, scene, networked, *out.channel));
+  if (!options.has_network()) return out;
+  out.channel->timed = true;
+  TACTUS_CHECK(add_network(options, scene, networked, *out.channel));
   return out;
 }
 
@@ -371,6 +376,7 @@ struct FinerRun {
   std::optional<sim::Simulation> simulation{};
   std::optional<TraceReader> recording{};
   TraceFrame recorded{};
+  CheckedTick now{};
   std::int64_t left;  // ticks
 
   Outcome begin(int parts) {
@@ -387,15 +393,18 @@ struct FinerRun {
     return {};
   }
 
-  const TraceFrame* step() {
+  const CheckedTick* step() {
     if (left-- == 0) return nullptr;
     if (recording) {
       const auto more = next_frame(*recording, recorded, options.replay);
       if (!more || !*more) return nullptr;
     }
+    now.begin(*simulation);
     const auto stepped = recording ? simulation->step(recorded_devices(*recording, recorded)) : simulation->step();
     if (!stepped) fmt::print(stderr, "tactus: --check: {}: {}\n", options.scene, printable(to_string(stepped.error())));
-    return stepped ? &simulation->frame() : nullptr;
+    if (!stepped) return nullptr;
+    now.end(simulation->frame());
+    return &now;
   }
 };
 
@@ -433,6 +442,10 @@ Outcome run(const SimOptions& options) {
   note_idle_options(*options.common.command, subjects_of(scene), "scene");
   Networked networked;
   TACTUS_TRY(const auto settings, settings_of(options, scene, networked));
+  if (options.has_network()) {
+    TACTUS_TRY(const auto network, network_of(options, scene));
+    warn_of_two(network, scene);
+  }
   auto simulation = sim::Simulation::create(scene, settings);
   if (!simulation) return refuse(options.scene, simulation.error());
   std::optional<TraceReader> recording;
@@ -468,10 +481,11 @@ Outcome run(const SimOptions& options) {
               {},
               {},
               {},
+              {},
               {}};
   if (!options.plot.empty()) session.figure.emplace(info);
   if (networked.network != nullptr) {
-    session.judge.emplace(info, options.triggers, options.meshes);
+    session.judge.emplace(info, scene, options.triggers, options.meshes);
     session.network = networked.network;
   }
   const auto ticks = options.duration < 0 ? session.simulation.ticks()
@@ -481,7 +495,7 @@ Outcome run(const SimOptions& options) {
     if (report.ticks.count() == 0) session.output.discard();
     return done;
   }
-  report_touches(scene, session.simulation, report);
+  report_touches(scene, session.simulation, options.has_network(), report);
   report_rigid(scene, session.simulation.rigid_errors(), report);
   if (session.judge) report.networks = session.judge->finish(*session.network);
   else if (options.has_channel()) report.stream = stream_size(session);
@@ -540,7 +554,7 @@ void setup_sim(Command& app, Action& action) {
       ->type_name("FILE");
   command.add_flag("--check", options->check,
                    "Simulate the same again beside it with half the step, and with a shape in each tick, and tell the difference "
-                   "[costs two to four times the time]");
+                   "in motion, shapes, forces, energies and the work of hands [costs two to four times the time]");
   command.add_flag("--codec", options->codec,
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");

@@ -36,7 +36,9 @@ bool get(std::FILE* in, T* values, std::size_t count) {
 
 /// All that is compared, tick by tick, until the reader has enough.
 bool write_run(const SimCheck::Step& step, std::FILE* out) {
-  while (const TraceFrame* const frame = step()) {
+  while (const CheckedTick* const now = step()) {
+    const TraceFrame* const frame = now->frame;
+    if (!put(out, now->energies.data(), now->energies.size()) || !put(out, now->works.data(), now->works.size())) return false;
     for (const RigidSample& object : frame->objects)
       if (!put(out, &object.pose, 1)) return false;
     for (const UserSample& user : frame->users)
@@ -73,6 +75,12 @@ double largest_difference(std::span<const float> a, std::span<const float> b) {
 
 double largest(std::span<const float> a) { return largest_difference(a, std::vector<float>(a.size())); }
 
+void look(CheckReport::Energy& energy, double own, double other, double first) {
+  energy.largest = std::max(energy.largest, std::abs(own - other));
+  energy.of = std::max(energy.of, std::abs(own - first));
+  energy.square_sum += (own - other) * (own - other);
+}
+
 void look(CheckReport::Quantity& quantity, double difference, double size, double at) {
   quantity.of = std::max(quantity.of, size);
   quantity.square_sum += difference * difference;
@@ -83,6 +91,21 @@ void look(CheckReport::Quantity& quantity, double difference, double size, doubl
 }
 
 }  // namespace
+
+void CheckedTick::end(const TraceFrame& of_tick) {
+  frame = &of_tick;
+  const std::size_t users = of_tick.users.size();
+  const bool begins = works.empty();
+  works.resize(users);
+  forces_.resize(users);
+  places_.resize(users);
+  for (std::size_t i = 0; i < users; ++i) {
+    const UserSample& user = of_tick.users[i];
+    if (!begins) works[i] -= dot(forces_[i], user.device.position - places_[i]);
+    places_[i] = user.device.position;
+    forces_[i] = user.force;
+  }
+}
 
 SimCheck::SimCheck(const TraceInfo& info, std::string against) : tick_(1.0 / info.tick_rate) {
   report_.against = std::move(against);
@@ -125,12 +148,21 @@ SimCheck::~SimCheck() {
   if (pipe_) end();
 }
 
-Outcome SimCheck::add(const TraceFrame& frame) {
+Outcome SimCheck::add(const CheckedTick& of_own) {
+  const TraceFrame& frame = *of_own.frame;
   const auto ended = [this] {
     return tl::unexpected(
         Failure{"--check: the run with " + report_.against + " ended early", "See its error above, or leave out --check."});
   };
   const double at = tick_ * static_cast<double>(frame.tick);
+  std::vector<double> energies(of_own.energies.size()), works(of_own.works.size());
+  if (!get(pipe_.get(), energies.data(), energies.size()) || !get(pipe_.get(), works.data(), works.size())) return ended();
+  if (first_energies_.empty()) first_energies_ = of_own.energies;
+  const auto compare_energy = [&](CheckReport::Quantity& quantity, std::size_t i) {
+    if (!quantity.energy) quantity.energy.emplace();
+    look(*quantity.energy, of_own.energies[i], energies[i], first_energies_[i]);
+  };
+  const std::size_t rigid = energies.size() - frame.meshes.size();
   if (starts_.empty())
     for (const RigidSample& object : frame.objects) starts_.push_back(object.pose.position);
   for (std::size_t i = 0; i < frame.objects.size(); ++i) {
@@ -139,11 +171,14 @@ Outcome SimCheck::add(const TraceFrame& frame) {
     const Pose& own = frame.objects[i].pose;
     look(report_.objects[i], norm(own.position - other.position), norm(own.position - starts_[i]), at);
     report_.turns[i] = std::max(report_.turns[i], angle_between(own.rotation, other.rotation));
+    if (i < rigid) compare_energy(report_.objects[i], i);
   }
   for (std::size_t i = 0; i < frame.users.size(); ++i) {
     Vec3 other;
     if (!get(pipe_.get(), &other, 1)) return ended();
     look(report_.users[i], norm(frame.users[i].force - other), norm(frame.users[i].force), at);
+    if (!report_.users[i].energy) report_.users[i].energy.emplace();
+    look(*report_.users[i].energy, of_own.works[i], works[i], 0);
   }
   for (std::size_t i = 0; i < frame.meshes.size(); ++i) {
     bool updated = false;
@@ -152,6 +187,7 @@ Outcome SimCheck::add(const TraceFrame& frame) {
     if (!frame.meshes[i].updated) continue;
     const std::vector<float>& own = frame.meshes[i].displacements;
     look(report_.meshes[i], largest_difference(own, meshes_[i]), largest(own), at);
+    compare_energy(report_.meshes[i], rigid + i);
   }
   return {};
 }

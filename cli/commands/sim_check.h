@@ -19,10 +19,26 @@
 
 namespace tactus::cli {
 
+/// What is compared of a run, one tick at a time.
+class CheckedTick {
+ public:
+  /// Before a tick of the simulation, and after it.
+  void begin(sim::Simulation& simulation) { simulation.energies(energies); }
+  void end(const TraceFrame& of_tick);
+
+  const TraceFrame* frame = nullptr;  ///< valid until the next tick
+  std::vector<double> energies;       ///< [J] as Simulation::energies, of this tick
+  std::vector<double> works;          ///< [J] of each user's hand, so far
+
+ private:
+  std::vector<Vec3> forces_;  // [N] on the hands in the tick before,
+  std::vector<Vec3> places_;  // [m] and where they were
+};
+
 class SimCheck {
  public:
   /// One tick of the finer run; null: it has ended, or failed and was said.
-  using Step = std::function<const TraceFrame*()>;
+  using Step = std::function<const CheckedTick*()>;
 
   /// Start a process with what `make` makes there.   pre  no thread was started
   /// in   against  what is finer: "half the step"
@@ -30,7 +46,7 @@ class SimCheck {
 
   /// Compare the next tick, and keep the largest differences.
   /// err  the finer run ended early
-  Outcome add(const TraceFrame& frame);
+  Outcome add(const CheckedTick& own);
   CheckReport finish();  ///< waits for its end
 
   SimCheck(SimCheck&&) noexcept = default;
@@ -46,6 +62,7 @@ class SimCheck {
 
   CheckReport report_;
   std::vector<Vec3> starts_;                // [m] of objects
+  std::vector<double> first_energies_;      // [J] as CheckedTick::energies
   std::vector<std::vector<float>> meshes_;  // of the finer run, newest
   std::unique_ptr<std::FILE, Close> pipe_;
   pid_t child_ = -1;

@@ -233,9 +233,10 @@ Option* add_playout(Command& app, std::string& value) {
     value = text;
   };
   return app
-      .add_option(
-          "--playout", read,
-          "How long after the fastest packet a client shows a tick: a time, or adaptive, which waits for nearly all [adaptive]")
+      .add_option("--playout", read,
+                  "How long after the fastest packet a client shows a tick: a time, or adaptive, which waits for nearly all, and "
+                  "30 ms while "
+                  "none was late, as the first that is would break the bounds [adaptive]")
       ->type_name("TIME");
 }
 

@@ -131,7 +131,7 @@ Json solver_json(const DeformableReport& d) {
   Json out{{"name", d.name}, {"vertices", d.vertices}, {"step_s", d.step}, {"method", d.method}, {"reason", d.reason}};
   if (d.h_omega > 0) out["h_omega"] = d.h_omega;
   if (d.samples > 0) {
-    out["step_error"] = {{"samples", d.samples}, {"p50", d.error_p50}, {"max", d.error_max}};
+    out["step_error"] = {{"samples", d.samples}, {"of_motion", d.error_of_motion}, {"most_of_motion", d.error_most}};
     if (d.samples < kFew) out["step_error"]["note"] = "too few to tell";
     out["energy_gained"] = d.energy_gained;
   }
@@ -152,6 +152,7 @@ Json network_json(const Report& r, const NetworkReport& user) {
            {"up", direction_json(user.up, r.seconds())},
            {"down", direction_json(user.down, r.seconds())},
            {"shown_behind_s", per(user.delay_sum, static_cast<double>(user.shown))},
+           {"playout_s", seconds_of(user.status.playout_delay)},
            {"ticks_not_shown", user.not_shown},
            {"ticks_without_full_force", user.without_force},
            {"packets_refused", user.status.traffic.packets_refused},
@@ -164,6 +165,9 @@ Json network_json(const Report& r, const NetworkReport& user) {
   out["bounds"] = bounds_value(user.errors.bounds());
   if (has_errors(user.errors)) out["error"] = errors_json(r, user.errors);
   for (const MeshReport& mesh : user.meshes) out["deformables"].push_back(mesh_json(mesh, r.seconds()));
+  for (const auto& [name, times] :
+       {std::pair("shapes", &user.shapes), std::pair("poses", &user.poses), std::pair("compensation", &user.compensation)})
+    if (!times->empty()) out["time"][name] = time_value(*times, r.seconds());
   return out;
 }
 
@@ -191,8 +195,15 @@ Json rigid_json(const RigidReport& r) {
 }
 
 Json difference_json(const CheckReport::Quantity& q, const std::string& name, const std::string& unit) {
-  const double rms = q.count > 0 ? std::sqrt(q.square_sum / static_cast<double>(q.count)) : 0;
-  return {{name, q.name}, {"largest_" + unit, q.largest}, {"at_s", q.at}, {"rms_" + unit, rms}, {"of_" + unit, q.of}};
+  const auto rms = [&q](double square_sum) { return std::sqrt(per(square_sum, static_cast<double>(q.count))); };
+  Json out{
+      {name, q.name}, {"largest_" + unit, q.largest}, {"at_s", q.at}, {"rms_" + unit, rms(q.square_sum)}, {"of_" + unit, q.of}};
+  if (!q.energy) return out;
+  const std::string what = name == "user" ? "work" : "energy";
+  out[what + "_J"] = q.energy->largest;
+  out[what + "_rms_J"] = rms(q.energy->square_sum);
+  out[what + "_of_J"] = q.energy->of;
+  return out;
 }
 
 Json check_json(const CheckReport& c) {
@@ -222,6 +233,8 @@ void add_particulars(Json& out, const Report& r) {
                               {"contacts", t.contacts},
                               {"contacts_most_in_a_second", t.most_in_a_second},
                               {"largest_force_N", t.largest_force},
+                              {"largest_server_force_N", t.largest_server_force},
+                              {"swing_m", t.swing},
                               {"lowest_energy_J", t.lowest_energy}});
   }
   for (const std::string& warning : r.warnings) out["warnings"].push_back(warning);

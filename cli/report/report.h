@@ -123,6 +123,8 @@ struct NetworkReport {
   std::uint64_t without_force = 0;   ///< ticks in which old data kept the client from rendering its full force
   double delay_sum = 0;              ///< [s] of the ticks shown, behind the server's
   std::uint64_t shown = 0;
+  StepTimes shapes{}, poses{},
+      compensation{};  ///< what the client computed for its user, per tick; empty: there is nothing of it
   SessionStatus status{};
   Widening widened{};  ///< of the bounds, by the server
   DirectionReport up{}, down{};
@@ -149,6 +151,8 @@ struct TouchReport {
   std::uint64_t contacts = 0;          ///< begun
   std::uint32_t most_in_a_second = 0;  ///< of them
   double largest_force = 0;            ///< [N] felt
+  double largest_server_force = 0;     ///< [N]
+  double swing = 0;                    ///< [m] to and fro, while the hand was to hold still
   double lowest_energy = 0;            ///< [J] of a contact, at most 0
 };
 
@@ -156,11 +160,11 @@ struct TouchReport {
 struct DeformableReport {
   std::string name, method, reason;
   std::size_t vertices = 0;
-  double step = 0;                      ///< [s]
-  double h_omega = 0;                   ///< step times the largest angular frequency; 0: not known
-  std::uint64_t samples = 0;            ///< steps whose error was looked at
-  double error_p50 = 0, error_max = 0;  ///< relative
-  double energy_gained = 0;             ///< without cause, over the whole run; share of all the work of forces
+  double step = 0;                             ///< [s]
+  double h_omega = 0;                          ///< step times the largest angular frequency; 0: not known
+  std::uint64_t samples = 0;                   ///< steps whose error was looked at
+  double error_of_motion = 0, error_most = 0;  ///< RMS of a step, and the largest; shares of the RMS motion in a step
+  double energy_gained = 0;                    ///< without cause, over the whole run; share of all the work of forces
 };
 
 /// What a rigid simulation knows of its own error.
@@ -181,11 +185,16 @@ struct RigidReport {
 
 /// How far a simulation was from a finer one of the same scene.
 struct CheckReport {
+  struct Energy {
+    double largest = 0, of = 0;  ///< [J] the largest difference, and the most that the energy changed since the first tick
+    double square_sum = 0;       ///< of differences, as many as of the quantity
+  };
   struct Quantity {
     std::string name;                    ///< of an object, or a user
     double largest = 0, at = 0, of = 0;  ///< the largest difference, when [s], and the largest value itself
     double square_sum = 0;               ///< of differences,
     std::uint64_t count = 0;             ///< so many
+    std::optional<Energy> energy{};      ///< of an object; of a user the work of the hand
   };
   std::string against;              ///< "half the step"
   std::vector<Quantity> objects{};  ///< [m] position, of the way from its first one

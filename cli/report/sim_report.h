@@ -18,6 +18,7 @@ class Simulation;
 }  // namespace tactus::sim
 
 namespace tactus::sim {
+struct NetworkOptions;
 class SessionNetwork;
 class Simulation;
 }  // namespace tactus::sim
@@ -29,9 +30,12 @@ namespace tactus::cli {
 
 struct Report;
 
-/// One TouchReport for each user, and a warning for each that chatters, presses a deformable object harder than eq. 4.38 allows at
+/// One TouchReport for each user, and a warning for each that chatters, swings while it should hold still, feels far less than the server's force, presses a deformable object harder than eq. 4.38 allows at
 /// the place of the largest force, or was held by a coupling that its device's smoothing makes swing.
-void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, Report& report);
+/// in   has_network  the clients are behind one
+void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, bool has_network, Report& report);
+/// Warns on standard error of two users at one object who simulate it at a distance where they may swing.
+void warn_of_two(const sim::NetworkOptions& network, const sim::Scene& scene);
 
 // ==== rigid report ====
 
@@ -46,7 +50,7 @@ Outcome check_contacts(const Report& report, const std::string& scene);
 class NetworkJudge {
  public:
   /// in   triggers, meshes  with the bounds that are judged
-  NetworkJudge(const TraceInfo& info, const TriggerArguments& triggers, const MeshArguments& meshes);
+  NetworkJudge(const TraceInfo& info, const sim::Scene& scene, const TriggerArguments& triggers, const MeshArguments& meshes);
   void add(const sim::Simulation& simulation, sim::SessionNetwork& network);  ///< after each step
   /// One report per user, with what the sessions counted.
   std::vector<NetworkReport> finish(const sim::SessionNetwork& network);
@@ -57,6 +61,7 @@ class NetworkJudge {
     std::vector<PlayedShapes> shapes{};  // of each deformable object
     std::int64_t judged = -1;            // last tick
   };
+  bool compensates_;
   PastFrames past_;
   const TraceInfo& info_;
   std::vector<User> users_;

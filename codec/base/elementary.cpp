@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/base/elementary.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace tactus {
@@ -11,20 +13,29 @@ namespace {
 constexpr double kHalfPi1 = 0x1.921fb544p+0, kHalfPi2 = 0x1.0b4611a6p-34, kHalfPi3 = 0x1.3198a2e037073p-69;
 constexpr double kLog2High = 0x1.62e42feep-1, kLog2Low = 0x1.a39ef35793c76p-33;
 
-/// sum of x^k / (first + k)! * first!, by Horner's rule.
-template <int kTerms>
-double factorial_series(double x, int first, int stride) noexcept {
-  double out = 1;
-  for (int k = kTerms; k > 0; --k) {
-    double divisor = 1;
-    for (int i = 0; i < stride; ++i) divisor *= first + (k - 1) * stride + i + 1;
-    out = 1 + out * (x / divisor);
+/// What each term of a series of factorials is divided by more than the one before.
+template <std::size_t kTerms, int kFirst, int kStride>
+constexpr std::array<double, kTerms> divisors() noexcept {
+  std::array<double, kTerms> out{};
+  int last = kFirst;
+  for (double& divisor : out) {
+    divisor = 1;
+    for (int i = 0; i < kStride; ++i) divisor *= ++last;
   }
   return out;
 }
 
-double sine_near(double r) noexcept { return r * factorial_series<9>(-r * r, 1, 2); }
-double cosine_near(double r) noexcept { return factorial_series<9>(-r * r, 0, 2); }
+/// sum of x^k / (first + stride k)! * first!, by Horner's rule.
+template <std::size_t kTerms, int kFirst, int kStride>
+double factorial_series(double x) noexcept {
+  static constexpr auto kDivisors = divisors<kTerms, kFirst, kStride>();
+  double out = 1;
+  for (std::size_t k = kTerms; k-- > 0;) out = 1 + out * (x / kDivisors[k]);
+  return out;
+}
+
+double sine_near(double r) noexcept { return r * factorial_series<9, 1, 2>(-r * r); }
+double cosine_near(double r) noexcept { return factorial_series<9, 0, 2>(-r * r); }
 
 struct Reduced {
   double rest;       // in [-pi/4, pi/4]
@@ -79,11 +90,11 @@ double exponential(double x) noexcept {
   if (x > 709.8) return std::numeric_limits<double>::infinity();
   const double n = std::floor(x * (1 / (kLog2High + kLog2Low)) + 0.5);
   const double r = (x - n * kLog2High) - n * kLog2Low;
-  return std::ldexp(factorial_series<14>(r, 0, 1), static_cast<int>(n));
+  return std::ldexp(factorial_series<14, 0, 1>(r), static_cast<int>(n));
 }
 
 double exponential_less_one(double x) noexcept {
-  return std::abs(x) < 0.5 ? x * factorial_series<15>(x, 1, 1) : exponential(x) - 1;
+  return std::abs(x) < 0.5 ? x * factorial_series<15, 1, 1>(x) : exponential(x) - 1;
 }
 
 double logarithm(double x) noexcept {

@@ -11,22 +11,33 @@ constexpr std::array<std::uint8_t, 4> kLittleEndian{0x00, 0x01, 0x00, 0x00};
 
 constexpr std::size_t padding(std::size_t position, std::size_t size) noexcept { return (size - position % size) % size; }
 
+/// Least significant byte first, all in one go: most of what a trace is made of.
+template <class Number>
+void put(std::vector<std::uint8_t>& out, Number value) {
+  std::array<std::uint8_t, sizeof value> bytes;
+  for (std::size_t i = 0; i < sizeof value; ++i) bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
 }  // namespace
 
 CdrWriter::CdrWriter(std::vector<std::uint8_t>& out) : bytes_(out), out_(out) {
   out.assign(kLittleEndian.begin(), kLittleEndian.end());
 }
 
-void CdrWriter::align(std::size_t size) { bytes_.insert(bytes_.end(), padding(bytes_.size() - kLittleEndian.size(), size), 0); }
+void CdrWriter::align(std::size_t size) {
+  if (const std::size_t missing = padding(bytes_.size() - kLittleEndian.size(), size); missing > 0)
+    bytes_.insert(bytes_.end(), missing, 0);
+}
 
 void CdrWriter::u32(std::uint32_t value) {
   align(sizeof value);
-  out_.u32(value);
+  put(bytes_, value);
 }
 
 void CdrWriter::i64(std::int64_t value) {
   align(sizeof value);
-  out_.u64(static_cast<std::uint64_t>(value));
+  put(bytes_, static_cast<std::uint64_t>(value));
 }
 
 void CdrWriter::f64(double value) { i64(std::bit_cast<std::int64_t>(value)); }

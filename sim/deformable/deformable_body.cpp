@@ -106,10 +106,16 @@ tl::expected<DeformableBody::Tick, Diagnostic> DeformableBody::tick() {
   for (int part = 0; part < parts_; ++part) TACTUS_CHECK(integrator_->step(load_, state_));
   look_for_rest();
   move_surface();
+  energy_.reset();
   time_ = {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
            static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC};
   if (balance_) balance_->add(load_, parts_ * choice_.options.step, state_);
   return Tick::stepped;
+}
+
+double DeformableBody::energy() noexcept {
+  if (!energy_) energy_ = state_.v.cwiseAbs2().dot(model_.lumped_mass()) / 2 + model_.energy(state_.u) - weight_.dot(state_.u);
+  return *energy_;
 }
 
 void DeformableBody::look_for_rest() noexcept {

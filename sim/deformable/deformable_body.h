@@ -59,6 +59,7 @@ class DeformableBody {
   const DeformationTime& time() const noexcept { return time_; }  ///< of the step that was due last: 0 if left out
   const std::optional<ErrorEstimate>& estimate() const noexcept { return estimate_; }
   std::optional<EnergyBalance>& balance() noexcept { return balance_; }  ///< there with the estimate
+  double energy() noexcept;                                              ///< DeformableObjects::energy
 
  private:
   DeformableBody(FemModel model, const SceneDeformable& object, const Vec3& gravity, int parts);
@@ -83,9 +84,10 @@ class DeformableBody {
   AabbTree tree_;
   DeformationTime time_;
   double reach_ = 0;
-  double rest_speed_;          // [m/s] slower than this a vertex moves by rounding only
-  std::uint32_t resting_ = 0;  // steps in a row
-  bool pushed_any_ = false;    // in this period
+  std::optional<double> energy_;  // [J] of the last shape, once it was asked for
+  double rest_speed_;             // [m/s] slower than this a vertex moves by rounding only
+  std::uint32_t resting_ = 0;     // steps in a row
+  bool pushed_any_ = false;       // in this period
 };
 
 }  // namespace tactus::sim

@@ -61,6 +61,7 @@ class Objects final : public DeformableObjects {
   std::span<const DeformableInfo> info() const noexcept override { return info_; }
   DeformationTime time(std::size_t object) const noexcept override { return bodies_[object]->time(); }
   std::optional<DeformableError> error(std::size_t object) const override;
+  double energy(std::size_t object) noexcept override { return bodies_[object]->energy(); }
 
  private:
   void deform(std::uint32_t object) noexcept;
@@ -149,7 +150,8 @@ std::optional<DeformableError> Objects::error(std::size_t object) const {
   if (!estimate) return std::nullopt;
   const ErrorEstimate::Result result = estimate->result();
   const EnergyBalance::Result balance = bodies_[object]->balance()->result();
-  return DeformableError{result.p50, result.max, result.samples, balance.moved > 0 ? balance.gained / balance.moved : 0};
+  return DeformableError{result.of_motion, result.most_of_motion, result.samples,
+                         balance.moved > 0 ? balance.gained / balance.moved : 0};
 }
 
 void Objects::observe(TraceFrame& frame) noexcept {

@@ -40,9 +40,10 @@ struct DeformationTime {
   double wall = 0, cpu = 0;
 };
 
-/// Relative error of single deformation steps by step doubling (sim/fem/error_estimate.h), and the energy error of all together.
+/// Error of single deformation steps by step doubling, as shares of the motion in a step (sim/fem/error_estimate.h), and the energy error
+/// of all together.
 struct DeformableError {
-  double p50 = 0, max = 0;
+  double of_motion = 0, most_of_motion = 0;
   std::int64_t samples = 0;
   double energy = 0;  ///< gained without cause, relative to all energy that moved (sim/fem/error_estimate.h); negative: lost
 };
@@ -65,6 +66,8 @@ class DeformableObjects : public Simulated {
   virtual std::span<const DeformableInfo> info() const noexcept = 0;
   virtual DeformationTime time(std::size_t object) const noexcept = 0;         ///< of its last deformation, with surface and tree
   virtual std::optional<DeformableError> error(std::size_t object) const = 0;  ///< when asked for in the options
+  /// [J] Kinetic and elastic energy of its last shape, and gravity's since its rest shape.   time of one evaluation per deformation
+  virtual double energy(std::size_t object) noexcept = 0;
 };
 
 struct DeformableOptions {

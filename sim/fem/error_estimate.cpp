@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace tactus::sim {
@@ -11,8 +10,6 @@ namespace tactus::sim {
 // ==== error estimate ====
 
 namespace {
-
-constexpr std::size_t kMost = 4096;  ///< samples; when full, every second sample is dropped and the sampling interval doubles
 
 int order(Method method) { return method == Method::backward_euler || method == Method::projective ? 1 : 2; }
 
@@ -40,34 +37,26 @@ ErrorEstimate::ErrorEstimate(std::unique_ptr<Copy> whole, std::unique_ptr<Copy> 
     : whole_(std::move(whole)), half_(std::move(half)), every_(every), coarse_(whole_->model.rest()), fine_(coarse_) {
   const double power = 1 << order(whole_->integrator->options().method);
   order_factor_ = power / (power - 1);
-  errors_.reserve(kMost);
 }
 
 void ErrorEstimate::look(const Eigen::VectorXd& f, const FemState& state) {
   if (calls_++ % every_ != 0) return;
-  if (errors_.size() == kMost) {
-    for (std::size_t i = 0; i < kMost / 2; ++i) errors_[i] = errors_[2 * i];
-    errors_.resize(kMost / 2);
-    every_ *= 2;
-  }
-  errors_.push_back(relative_error(f, state));
-}
-
-double ErrorEstimate::relative_error(const Eigen::VectorXd& f, const FemState& state) {
   coarse_ = state;
   fine_ = state;
-  if (!whole_->integrator->step(f, coarse_)) return std::numeric_limits<double>::infinity();
+  if (!whole_->integrator->step(f, coarse_)) return;
   for (int i = 0; i < 2; ++i)
-    if (!half_->integrator->step(f, fine_)) return std::numeric_limits<double>::infinity();
-  const double size = fine_.u.norm();
-  return size == 0 ? 0 : order_factor_ * (coarse_.u - fine_.u).norm() / size;
+    if (!half_->integrator->step(f, fine_)) return;
+  const double error2 = order_factor_ * order_factor_ * (coarse_.u - fine_.u).squaredNorm();
+  errors2_ += error2;
+  largest2_ = std::max(largest2_, error2);
+  motions2_ += (fine_.u - state.u).squaredNorm();
+  ++samples_;
 }
 
-ErrorEstimate::Result ErrorEstimate::result() const {
-  if (errors_.empty()) return {};
-  std::vector<double> sorted = errors_;
-  std::sort(sorted.begin(), sorted.end());
-  return {sorted[sorted.size() / 2], sorted.back(), static_cast<std::int64_t>(sorted.size())};
+ErrorEstimate::Result ErrorEstimate::result() const noexcept {
+  if (motions2_ == 0) return {.samples = samples_};
+  const double motion2 = motions2_ / static_cast<double>(samples_);
+  return {std::sqrt(errors2_ / motions2_), std::sqrt(largest2_ / motion2), samples_};
 }
 
 // ==== energy balance ====

@@ -2,7 +2,7 @@
 /// How wrong steps are: estimated error, and energy that nobody put in.
 #pragma once
 
-#include <vector>
+#include <cstdint>
 
 #include <tactus/sim/fem/integrator.h>
 
@@ -11,12 +11,15 @@ namespace tactus::sim {
 // ==== error estimate ====
 // Error of single steps by step doubling: one whole step against two half ones from the same state, for some of the steps, on a
 // copy of the model. The simulation's results do not depend on it.
-//   error of the whole step = 2^p / (2^p - 1) |u_whole - u_halves|,  p the order        relative to |u_halves|
+//   error of the whole step = 2^p / (2^p - 1) |u_whole - u_halves|,  p the order        relative to |u_halves - u_before|
+// The root mean squares of both are compared, so that a step counts by how far the object moves in it. At rest no method errs, and those
+// that damp rest soonest: a median over steps would rank these first.
 
 class ErrorEstimate {
  public:
   struct Result {
-    double p50 = 0, max = 0;  ///< relative error of one step; 0 without samples
+    double of_motion = 0;       ///< RMS error of a step by the RMS motion in a step; 0 without samples, or motion
+    double most_of_motion = 0;  ///< the largest error of a step by the same
     std::int64_t samples = 0;
   };
 
@@ -24,10 +27,10 @@ class ErrorEstimate {
   static tl::expected<ErrorEstimate, Diagnostic> create(const FemModel& model, const IntegratorOptions& options,
                                                         std::int64_t every = 50);
 
-  /// Report a step before it is taken.   time three steps if it is estimated, else nothing; no allocation after the first
-  /// estimate
+  /// Report a step before it is taken. One that the copies cannot take does not count.   time three steps if it is estimated,
+  /// else nothing; no allocation after the first estimate
   void look(const Eigen::VectorXd& f, const FemState& state);
-  Result result() const;  ///< allocates
+  Result result() const noexcept;
 
  private:
   struct Copy {  // stays where it is: the integrator refers to the model
@@ -36,13 +39,12 @@ class ErrorEstimate {
   };
   ErrorEstimate(std::unique_ptr<Copy> whole, std::unique_ptr<Copy> half, std::int64_t every);
   static tl::expected<std::unique_ptr<Copy>, Diagnostic> copy(const FemModel& model, const IntegratorOptions& options);
-  double relative_error(const Eigen::VectorXd& f, const FemState& state);
-
   std::unique_ptr<Copy> whole_, half_;
   std::int64_t every_, calls_ = 0;
   double order_factor_;
   FemState coarse_, fine_;
-  std::vector<double> errors_;
+  double errors2_ = 0, motions2_ = 0, largest2_ = 0;  // [m2] sums of squares, and the largest error's
+  std::int64_t samples_ = 0;
 };
 
 // ==== energy balance ====

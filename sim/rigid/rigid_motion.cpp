@@ -88,6 +88,10 @@ void RigidWorld::Impl::end(Body& body) {
   project(body);
   stand_still(body);
   body.starts = body.stands;
+  const Motion now = motion_of(body.handle);
+  body.change_before = body.change;
+  body.change = {(1 / body.share) * (now.velocity - body.stepped.velocity),
+                 (1 / body.share) * (now.angular_velocity - body.stepped.angular_velocity)};
   judge_drift(body);
   judge_flight(body);
 }

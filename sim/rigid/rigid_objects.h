@@ -74,6 +74,7 @@ class RigidObjects final : public Simulated {
 
   Vec3 inertia(std::uint32_t object) const noexcept { return world_.inertia(object); }  ///< RigidWorld::inertia
   const RigidErrors& errors() const noexcept { return world_.errors(); }
+  double energy(std::uint32_t object) const noexcept { return world_.energy(object); }  ///< [J] RigidWorld::energy
 
   /// Forces of the last step on every rigid and one-dimensional object of the scene, those on the latter zero; empty unless
   /// tells_loads(scene).

@@ -236,6 +236,16 @@ Vec3 RigidWorld::inertia(std::uint32_t object) const noexcept {
 
 const RigidErrors& RigidWorld::errors() const noexcept { return impl_->errors; }
 
+double RigidWorld::energy(std::uint32_t object) const noexcept {
+  const Body& body = impl_->bodies[object];
+  if (!body.handle) return 0;
+  const RigidSample now = impl_->sample(body);
+  const auto [v, w] = body.awake ? motion_at_tick(body) : Motion{};
+  const Vec3 turning = rotate(conjugate(now.pose.rotation), w);
+  return body.spec.mass * (dot(v, v) / 2 - dot(impl_->gravity, now.pose.position - body.spec.pose.position)) +
+         dot(turning, body.inertia.moments * turning) / 2;
+}
+
 std::int64_t RigidWorld::tick() const noexcept { return impl_->tick; }
 
 }  // namespace tactus::sim

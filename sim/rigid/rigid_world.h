@@ -64,6 +64,8 @@ class RigidWorld {
   };
   const Load& load(std::uint32_t object) const noexcept;  ///< zero unless tells_loads(scene)
   const RigidErrors& errors() const noexcept;             ///< of all steps so far
+  /// [J] Kinetic energy of an object at this tick, and gravity's since its start.   time O(1)
+  double energy(std::uint32_t object) const noexcept;
   /// [kg m^2] Moments of inertia about the axes of an object's frame; zero: it is static.
   Vec3 inertia(std::uint32_t object) const noexcept;
   std::int64_t tick() const noexcept;

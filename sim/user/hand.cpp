@@ -148,6 +148,7 @@ DeviceSample Hand::step(const Vec3& felt, const Pose& object) noexcept {
     target = spiral_->at(share);
     target.velocity = (1 / duration) * target.velocity;
   }
+  aim_speed_ = norm(target.velocity);
 
   const Vec3 pull = impedance_.stiffness * (target.place - position_) + impedance_.damping * (target.velocity - velocity_);
   const Vec3 force = only(pull + felt + tremor_.force(static_cast<double>(tick_) * kTick), user_.device.axes);

@@ -104,6 +104,7 @@ class Hand {
 
   const HandImpedance& impedance() const noexcept { return impedance_; }
   const Vec3& position() const noexcept { return position_; }  ///< [m] of the hand itself, before the encoders
+  double aim_speed() const noexcept { return aim_speed_; }     ///< [m/s] of what it follows, in the last step()
 
  private:
   void begin_phase(const Pose& object) noexcept;
@@ -116,6 +117,7 @@ class Hand {
   Vec3 position_, velocity_;
   Vec3 from_, to_;  // of the phase that runs or ran last
   std::optional<Spiral> spiral_;
+  double aim_speed_ = 0;
   std::size_t next_ = 0;  // phase; after the last one the hand stays where it is
   std::int64_t tick_ = 0, begin_ = 0, end_ = 0;
 };

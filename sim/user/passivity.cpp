@@ -87,9 +87,55 @@ double sampled_limit(const HandImpedance& hand, const SceneDevice& device) noexc
   return std::max(0.0, limit);
 }
 
+// ==== swings ====
+
+namespace {
+
+constexpr double kTurn = 1e-4;                        // [m] back from the farthest point: it was a turning point
+constexpr std::int64_t kSwingWithin = 2 * kTickRate;  // [ticks]
+
+}  // namespace
+
+void SwingMeter::add(const Vec3& position, bool holds) noexcept {
+  if (!holds || !holds_) axes_ = {};
+  holds_ = holds;
+  ++tick_;
+  if (!holds) return;
+  add(axes_[0], position.x);
+  add(axes_[1], position.y);
+  add(axes_[2], position.z);
+}
+
+void SwingMeter::add(Axis& axis, double x) noexcept {
+  if (axis.direction == 0) {
+    if (axis.turned_at == 0) axis.peak = axis.turned = x, axis.turned_at = tick_;
+    if (std::abs(x - axis.turned) < kTurn) return;
+    axis.direction = x > axis.turned ? 1 : -1;
+    axis.peak = x;
+  }
+  const double beyond = axis.direction * (x - axis.peak);
+  if (beyond >= 0) axis.peak = x;
+  if (beyond > -kTurn) return;
+  const std::size_t at = axis.swings % kInARow;
+  axis.sizes[at] = std::abs(axis.peak - axis.turned);
+  axis.begins[at] = axis.turned_at;
+  axis.turned = axis.peak;
+  axis.turned_at = tick_;
+  axis.peak = x;
+  axis.direction = -axis.direction;
+  if (++axis.swings < kInARow || tick_ - *std::min_element(axis.begins.begin(), axis.begins.end()) > kSwingWithin) return;
+  largest_ = std::max(largest_, *std::min_element(axis.sizes.begin(), axis.sizes.end()));
+}
+
 // ==== touch record ====
 
-void TouchRecord::add(const UserSample& sample) noexcept {
+namespace {
+
+constexpr std::uint32_t kLetGo = kTickRate / 2;  // [ticks] without a contact: it holds nothing
+
+}  // namespace
+
+void TouchRecord::add(const UserSample& sample, Aim aim) noexcept {
   const bool touches = sample.contact.kind != ContactKind::none || sample.surface_contact;
   const bool begins = touches && !touching_;
   touching_ = touches;
@@ -98,6 +144,10 @@ void TouchRecord::add(const UserSample& sample) noexcept {
   port_.hold(sample.force);
   summary_.lowest_energy = port_.lowest();
   summary_.largest_force = std::max(summary_.largest_force, norm(sample.force));
+  summary_.largest_server_force = std::max(summary_.largest_server_force, norm(sample.server_force));
+  free_for_ = touches ? 0 : free_for_ + 1;
+  swings_.add(sample.device.position, aim == Aim::rests && summary_.contacts > 0 && free_for_ < kLetGo);
+  summary_.swing = swings_.largest();
   summary_.ticks += touches ? 1 : 0;
   summary_.contacts += begins ? 1 : 0;
   in_a_second_ += (begins ? 1U : 0U) - (began_[tick_] ? 1U : 0U);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <cstdint>
 #include <limits>
@@ -90,6 +91,36 @@ class PassivityController {
 /// time 40 us for N = 8, 2 ms for 1000
 double sampled_limit(const HandImpedance& hand, const SceneDevice& device) noexcept;
 
+// ==== swings ====
+// A hand that wants to hold still and goes to and fro: the loop that it closes through the scene is not stable.
+
+class SwingMeter {
+ public:
+  /// One tick.   in  holds  the hand wants to stay where it is, and touches something now and then   time O(1), no allocation
+  void add(const Vec3& position, bool holds) noexcept;
+  /// [m] The largest so far of the least of four swings in a row along an axis, from turning point to turning point, within two
+  /// seconds: a push from outside makes one or two.
+  double largest() const noexcept { return largest_; }
+
+ private:
+  static constexpr std::size_t kInARow = 4;
+  struct Axis {
+    int direction = 0;       // of the way since the last turning point; 0: there was none
+    double peak = 0;         // [m] farthest on it
+    double turned = 0;       // [m] the last turning point
+    std::size_t swings = 0;  // so far
+    std::array<double, kInARow> sizes{};
+    std::array<std::int64_t, kInARow> begins{};  // ticks
+    std::int64_t turned_at = 0;
+  };
+  void add(Axis& axis, double x) noexcept;
+
+  std::array<Axis, 3> axes_{};
+  std::int64_t tick_ = 0;
+  bool holds_ = false;
+  double largest_ = 0;
+};
+
 // ==== touch record ====
 // Summary of a run at one user's hand: contacts, forces, and the energy of the port between device and scene (thesis 2.2.2).
 
@@ -99,6 +130,8 @@ struct TouchSummary {
   std::uint32_t most_in_a_second =
       0;                     ///< contacts begun within one second: more than about ten is chattering, not the hand's motion
   double largest_force = 0;  ///< [N] felt
+  double largest_server_force = 0;  ///< [N] of the server
+  double swing = 0;                 ///< [m] SwingMeter::largest, while the hand was to hold still
   /// [J] least net energy that the hand had put into the scene since a contact began, at most 0. A negative value means that the
   /// scene gave away more than it had taken. Sampling and delay cause this (eq. 2.2), and so do weight and other users, which
   /// have energy of their own. Each contact begins at 0, because energy taken by earlier ones would hide energy given by this
@@ -110,8 +143,10 @@ struct TouchSummary {
 
 class TouchRecord {
  public:
+  /// What a hand wants.
+  enum class Aim : std::uint8_t { moves, rests, unknown };
   /// One tick, as in the trace.   time O(1), no allocation
-  void add(const UserSample& sample) noexcept;
+  void add(const UserSample& sample, Aim aim = Aim::unknown) noexcept;
 
   const TouchSummary& summary() const noexcept { return summary_; }
 
@@ -119,6 +154,8 @@ class TouchRecord {
   TouchSummary summary_;
   PassivityObserver port_;
   bool touching_ = false;
+  SwingMeter swings_;
+  std::uint32_t free_for_ = 0;    // ticks without a contact
   double hardest_ = 0;            // [N]
   std::bitset<kTickRate> began_;  // in each tick of the last second
   std::size_t tick_ = 0;          // of that second

@@ -31,6 +31,30 @@ TEST(RigidMotion, FallsAndPushesStartExactly) {
   EXPECT_LT(world.errors().flight.value, 1e-12);
 }
 
+/// Velocities are those of half a step before; energies are not.
+TEST(RigidMotion, EnergyIsThatOfTheTick) {
+  for (const int parts : {1, 2}) {
+    Scene scene = cube_scene();
+    scene.floor.reset();
+    scene.objects[0].velocity = {0.3, 0, 1};
+    scene.objects[0].angular_velocity = {0, 0, 2};
+    RigidWorld world(scene, {.parts = parts});
+    const double inertia = world.inertia(0).z, start = kMass * (0.3 * 0.3 + 1) / 2 + inertia * 2 * 2 / 2;
+    for (int tick = 1; tick <= 500; ++tick) {
+      ASSERT_TRUE(world.step());
+      ASSERT_NEAR(world.energy(0), start, 1e-9) << tick;
+    }
+  }
+  Scene scene = cube_scene();
+  scene.objects[0].velocity = {1, 0, 0};
+  RigidWorld world(scene);
+  run(world, 50);
+  const double v = 1 - kMu * kGravity * 0.05;
+  EXPECT_NEAR(world.energy(0), kMass * v * v / 2, 1e-6);
+  run(world, 950);
+  EXPECT_NEAR(world.energy(0), 0, 1e-9) << "lies";
+}
+
 TEST(RigidMotion, SlidesStartAndEndExactly) {
   Scene scene = cube_scene();
   scene.objects[0].velocity = {1, 0, 0};

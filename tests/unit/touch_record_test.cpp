@@ -52,6 +52,24 @@ TEST(TouchRecord, TheEnergyOfEachContactIsItsOwn) {
   EXPECT_EQ(record.summary().contacts, 2U);
 }
 
+/// To and fro four times: a push from outside is none, nor is slow motion, nor what the hand is to do itself.
+TEST(TouchRecord, SwingsOfAHandThatHoldsStill) {
+  using Aim = TouchRecord::Aim;
+  const auto swing = [](auto&& place, Aim aim) {
+    TouchRecord record;
+    for (int tick = 0; tick < 4000; ++tick) record.add(pressing({1, 0, 0}, {place(1e-3 * tick), 0, 0}), aim);
+    return record.summary().swing;
+  };
+  const auto wave = [](double hertz) { return [hertz](double t) { return 2e-3 * std::sin(2 * 3.14159265 * hertz * t); }; };
+  EXPECT_NEAR(swing(wave(3), Aim::rests), 4e-3, 1e-6);
+  EXPECT_GT(swing([&](double t) { return 1e-2 * t + wave(3)(t); }, Aim::rests), 2e-3) << "on a way";
+  EXPECT_EQ(swing(wave(3), Aim::moves), 0);
+  EXPECT_EQ(swing(wave(3), Aim::unknown), 0);
+  EXPECT_EQ(swing(wave(0.5), Aim::rests), 0) << "four within two seconds";
+  EXPECT_EQ(swing([](double t) { return t > 1 && t < 1.5 ? 5e-3 : 0.0; }, Aim::rests), 0);
+  EXPECT_LT(swing([&](double t) { return std::exp(-8 * t) * wave(3)(t); }, Aim::rests), 1e-3) << "dies away";
+}
+
 TEST(TouchRecord, RemembersWhereADeformableWasPressedHardest) {
   TouchRecord record;
   for (const double force : {0.5, 2.0, 1.0}) {
