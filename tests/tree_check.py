@@ -109,6 +109,8 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "io/trace/csv_units": "csv",
     "io/trace/mcap_reader": "trace",
     "io/trace/mcap_writer": "trace",
+    "io/trace/cdr": "trace",
+    "io/trace/message_schemas": "trace",
     "io/trace/messages": "trace",
     "io/trace/ros_assembler": "trace_ros",
     "io/trace/ros_clock": "trace_ros",

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include <tactus/file/stream_file.h>
-#include <tactus/scene/scene_syntax.h>
 #include <tactus/sim/link/session_network.h>
 #include <tactus/sim/simulation.h>
 #include <tactus/trace/trace_file.h>
@@ -18,6 +16,7 @@
 #include "cli/commands/input.h"
 #include "cli/commands/scene_run.h"
 #include "cli/commands/sim_check.h"
+#include "cli/commands/sim_run.h"
 #include "cli/commands/stiffness_map.h"
 #include "cli/figure/time_figure.h"
 #include "cli/live/ticker.h"
@@ -30,182 +29,8 @@
 namespace tactus::cli {
 namespace {
 
-struct SimOptions {
-  std::string scene, output, stream, replay;
-  std::string pcap;           // capture to write
-  std::string plot;           // figure to draw
-  std::string stiffness_map;  // CSV to write
-  HandArguments hands;
-  std::string method, solver;  // of deformable objects, empty: the scene's
-  std::uint32_t rate = 0;      // ticks between deformations, 0: the scene's
-  std::uint64_t seed = 1;
-  double duration = -1;   // [s], negative: the scene's
-  double mesh_noise = 0;  // [m] RMS per axis
-  bool codec = false, check = false;
-  std::string compensation;  // empty: the scene's
-  double told = 1;           // of what devices move, times the true
-  TriggerArguments triggers;
-  MeshArguments meshes;
-  ReplicaOptions replica;
-  std::optional<sim::LinkOptions> link, uplink;  // of both directions, of the one to the server
-  std::string playout = "adaptive";
-  CommonOptions common;
-
-  bool has_network() const { return link || uplink; }
-  bool has_channel() const {
-    return codec || has_network() || !stream.empty() || triggers.any_given() || meshes.any_given() ||
-           replica.interpolation != Interpolation::none;
-  }
-};
-
-/// Where packets go, if anywhere.
-struct StreamOutput {
-  OutputFile file;
-  StreamFileWriter writer;
-};
-
-tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const Scene& scene) {
-  TACTUS_TRY(auto file, OutputFile::create(options.stream, options.common.existing(),
-                                           {options.output, options.stiffness_map, options.scene, options.replay}));
-  TACTUS_TRY(const auto out, file.open());
-  auto writer = StreamFileWriter::create(*out, scene);
-  if (!writer) return refuse(options.stream, writer.error());
-  return StreamOutput{std::move(file), std::move(*writer)};
-}
-
 constexpr double kMostTicks = 0xffffffff;     // of a stream: spec/20-scene.md
 constexpr std::uint32_t kEstimateEvery = 19;  // deformations between looks at their error: no beat with what repeats
-
-struct Run {
-  sim::Simulation simulation;
-  OutputFile output;  // of the trace
-  TraceWriter trace;
-  std::optional<StreamOutput> stream;
-  std::optional<TraceReader> recording;
-  TraceFrame recorded;
-  std::vector<DeviceSample> devices;  // of this tick, recorded
-  std::optional<NetworkJudge> judge;  // with a network
-  sim::SessionNetwork* network = nullptr;
-  std::optional<MotionFigure> figure;
-  std::vector<SimCheck> checks;  // finer runs beside it
-  CheckedTick checked;           // for them
-};
-
-/// One tick, by the scene's hands or by the recording.
-tl::expected<std::span<const Packet>, Failure> step(Run& run, const SimOptions& options, StepTimes& times) {
-  if (run.recording) run.devices = recorded_devices(*run.recording, run.recorded);
-  const auto stepped = times.measure([&] { return run.recording ? run.simulation.step(run.devices) : run.simulation.step(); });
-  if (stepped) return *stepped;
-  Diagnostic error = stepped.error();
-  std::string place = place_of_tick(std::exchange(error.step, -1));
-  if (const std::string within = place_of(error); !within.empty()) place += ", " + within;
-  auto refused = refuse(options.scene, place, error.error);
-  if (!error.remedy.empty()) refused.value().remedy = error.remedy + '.';
-  return refused;
-}
-
-/// What was sent in this tick.
-Outcome record_packets(Run& run, std::span<const Packet> packets, const SimOptions& options, Report& report) {
-  for (const Packet& packet : packets) {
-    if (packet.substream > report.meshes.size()) report.loads->add(packet.bytes.size(), packet.updates);
-    else if (packet.substream > 0)
-      report.meshes[packet.substream - 1].traffic->add(packet.bytes.size(), packet.updates, packet.key, packet.layer);
-    else if (report.traffic) report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
-    if (run.figure) run.figure->add_packet(run.simulation.frame().tick, packet.bytes.size());
-    if (!run.stream) continue;
-    const auto added = run.stream->writer.add(run.simulation.frame().tick, packet.bytes, packet.key);
-    if (!added) return refuse(options.stream, added.error());
-  }
-  return {};
-}
-
-/// What the client shows of deformable objects that are new in this tick.
-void judge_meshes(Run& run, Report& report) {
-  const TraceFrame& frame = run.simulation.frame();
-  for (std::size_t i = 0; i < report.meshes.size(); ++i) {
-    if (!frame.meshes[i].updated) continue;
-    ++report.meshes[i].traffic->frames;
-    report.meshes[i].fidelity->add(frame.meshes[i].displacements, run.simulation.replica().displacements(i, frame.tick),
-                                   touch_of(frame, i));
-  }
-}
-
-Outcome record(Run& run, std::span<const Packet> packets, const SimOptions& options, Report& report) {
-  const TraceFrame& frame = run.simulation.frame();
-  if (const auto written = run.trace.write(frame); !written)
-    return refuse(options.output, place_of_tick(frame.tick), written.error());
-  TACTUS_CHECK(record_packets(run, packets, options, report));
-  if (run.figure) run.figure->add(frame);
-  if (run.judge) {
-    run.judge->add(run.simulation, *run.network);
-  } else if (report.fidelity) {
-    judge_meshes(run, report);
-    report.fidelity->add(frame, run.simulation.client_poses());
-  }
-  if (report.fidelity) report.fidelity->add_rendered(frame);
-  report.ticks.add(frame.tick);
-  return {};
-}
-
-/// Of what was sent, or would have been.
-StreamSize stream_size(const Run& run) {
-  if (run.stream) return {run.stream->writer.header_bytes(), run.stream->writer.bytes()};
-  const auto declaration = write_scene(*run.simulation.stream_scene());
-  return {declaration ? declaration->size() : 0, std::nullopt};
-}
-
-/// How long the deformations of this tick took, one time each.
-void add_deformations(const Run& run, StepTimes& times) {
-  const auto& meshes = run.simulation.frame().meshes;
-  for (std::size_t i = 0; i < meshes.size(); ++i)
-    if (meshes[i].updated) {
-      const sim::DeformationTime time = run.simulation.deformables()->time(i);
-      times.add({std::llround(1e9 * time.wall), std::llround(1e9 * time.cpu)});
-    }
-}
-
-/// An error after some ticks: says that the trace holds them, if it does.
-tl::unexpected<Failure> refuse_after(Failure failure, const Run& run, const Report& report) {
-  const std::uint64_t ticks = report.ticks.count();
-  if (run.output.stays() && ticks > 0) {
-    failure.remedy += fmt::format("{}{} holds the {} before the error.", failure.remedy.empty() ? "" : " ", run.output.path(),
-                                  counted(ticks, "tick"));
-  }
-  return tl::unexpected(std::move(failure));
-}
-
-Outcome finish(Run& run, const SimOptions& options) {
-  if (const auto done = run.trace.finish(); !done) return refuse(options.output, done.error());
-  if (run.stream) {
-    if (const auto done = run.stream->writer.finish(); !done) return refuse(options.stream, done.error());
-    TACTUS_CHECK(run.stream->file.keep());
-  }
-  return run.output.keep();
-}
-
-Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report& report) {
-  Progress progress("sim", static_cast<std::uint64_t>(ticks), options.common.progress());
-  const StopOnSignal stop;
-  for (std::int64_t i = 0; i < ticks && StopOnSignal::caught() == 0; ++i) {
-    if (run.recording) {
-      const auto more = next_frame(*run.recording, run.recorded, options.replay);
-      if (!more) return refuse_after(more.error(), run, report);
-      if (!*more) {
-        TACTUS_CHECK(check_ending(options.replay, *run.recording, report.ticks.count()));
-        break;
-      }
-    }
-    if (!run.checks.empty()) run.checked.begin(run.simulation);
-    const auto packet = step(run, options, report.timings[0].times);
-    if (!packet) return refuse_after(packet.error(), run, report);
-    if (report.timings.size() > 1) add_deformations(run, report.timings[1].times);
-    TACTUS_CHECK(record(run, *packet, options, report));
-    if (!run.checks.empty()) run.checked.end(run.simulation.frame());
-    for (SimCheck& check : run.checks) TACTUS_CHECK(check.add(run.checked));
-    progress.update(report.ticks.count());
-  }
-  return finish(run, options);
-}
 
 Report make_report(const SimOptions& options, const TraceInfo& info) {
   Report report{.command = "sim", .files = {{"scene", options.scene}, {"trace", options.output}}};
@@ -408,7 +233,7 @@ struct FinerRun {
   }
 };
 
-Outcome start_checks(const SimOptions& options, const sim::Scene& scene, const TraceInfo& info, std::int64_t ticks, Run& run) {
+Outcome start_checks(const SimOptions& options, const sim::Scene& scene, const TraceInfo& info, std::int64_t ticks, SimRun& run) {
   if (!options.check) return {};
   const auto add = [&](const char* against, int parts, std::uint32_t rate) -> Outcome {
     TACTUS_TRY(auto check, SimCheck::start(info, against, [&]() -> SimCheck::Step {
@@ -471,18 +296,18 @@ Outcome run(const SimOptions& options) {
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
   if (options.has_channel() && !options.has_network() && simulation->stream_scene()->loads) report.loads.emplace();
-  Run session{std::move(*simulation),
-              std::move(output),
-              std::move(*trace),
-              std::move(stream),
-              std::move(recording),
-              {},
-              {},
-              {},
-              {},
-              {},
-              {},
-              {}};
+  SimRun session{std::move(*simulation),
+                 std::move(output),
+                 std::move(*trace),
+                 std::move(stream),
+                 std::move(recording),
+                 {},
+                 {},
+                 {},
+                 {},
+                 {},
+                 {},
+                 {}};
   if (!options.plot.empty()) session.figure.emplace(info);
   if (networked.network != nullptr) {
     session.judge.emplace(info, scene, options.triggers, options.meshes);
