@@ -251,7 +251,8 @@ Outcome start_checks(const SimOptions& options, const sim::Scene& scene, const T
   return is_rare ? add("a shape in each tick", 1, 1) : Outcome();
 }
 
-Outcome run(const SimOptions& options) {
+/// What needs no scene.
+Outcome check_options(const SimOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   if (options.duration >= 0 && options.duration < 0.5 / sim::kTickRate)
     return refuse_arguments("--duration: shorter than a tick", "Give at least 1ms.");
@@ -263,6 +264,11 @@ Outcome run(const SimOptions& options) {
   for (const auto& [name, why] : {std::pair{"--playout", "nothing is late"}, {"--told", "nobody is told anything"}})
     if (!options.has_network() && options.common.command->find(name)->count() > 0)
       return refuse_arguments(fmt::format("{}: without a network {}", name, why), "Give --link or --uplink, or leave it out.");
+  return {};
+}
+
+Outcome run(const SimOptions& options) {
+  TACTUS_CHECK(check_options(options));
   TACTUS_TRY(const auto scene, read_scene(options));
   note_idle_options(*options.common.command, subjects_of(scene), "scene");
   Networked networked;

@@ -75,7 +75,7 @@ double largest_difference(std::span<const float> a, std::span<const float> b) {
 
 double largest(std::span<const float> a) { return largest_difference(a, std::vector<float>(a.size())); }
 
-void look(CheckReport::Energy& energy, double own, double other, double first) {
+void look(EnergyDifference& energy, double own, double other, double first) {
   energy.largest = std::max(energy.largest, std::abs(own - other));
   energy.of = std::max(energy.of, std::abs(own - first));
   energy.square_sum += (own - other) * (own - other);

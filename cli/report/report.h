@@ -183,18 +183,19 @@ struct RigidReport {
   std::vector<Object> objects{};
 };
 
+struct EnergyDifference {
+  double largest = 0, of = 0;  ///< [J] the largest difference, and the most that the energy changed since the first tick
+  double square_sum = 0;       ///< of differences, as many as of the quantity
+};
+
 /// How far a simulation was from a finer one of the same scene.
 struct CheckReport {
-  struct Energy {
-    double largest = 0, of = 0;  ///< [J] the largest difference, and the most that the energy changed since the first tick
-    double square_sum = 0;       ///< of differences, as many as of the quantity
-  };
   struct Quantity {
-    std::string name;                    ///< of an object, or a user
-    double largest = 0, at = 0, of = 0;  ///< the largest difference, when [s], and the largest value itself
-    double square_sum = 0;               ///< of differences,
-    std::uint64_t count = 0;             ///< so many
-    std::optional<Energy> energy{};      ///< of an object; of a user the work of the hand
+    std::string name;                          ///< of an object, or a user
+    double largest = 0, at = 0, of = 0;        ///< the largest difference, when [s], and the largest value itself
+    double square_sum = 0;                     ///< of differences,
+    std::uint64_t count = 0;                   ///< so many
+    std::optional<EnergyDifference> energy{};  ///< of an object; of a user the work of the hand
   };
   std::string against;              ///< "half the step"
   std::vector<Quantity> objects{};  ///< [m] position, of the way from its first one

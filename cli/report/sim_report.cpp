@@ -92,7 +92,7 @@ std::string shared_object(const sim::Scene& scene) {
 double round_trip_of(const sim::NetworkOptions& network) {
   double sum = 0;
   for (const sim::LinkOptions* link : {&network.downlink, &network.uplink})
-    sum += 1e-6 * static_cast<double>(link->delay + link->gamma_mean + link->jitter / 2);
+    sum += 1e-6 * (static_cast<double>(link->delay + link->gamma_mean) + 0.5 * static_cast<double>(link->jitter));
   return sum;
 }
 

@@ -91,8 +91,8 @@ double sampled_limit(const HandImpedance& hand, const SceneDevice& device) noexc
 
 namespace {
 
-constexpr double kTurn = 1e-4;                        // [m] back from the farthest point: it was a turning point
-constexpr std::int64_t kSwingWithin = 2 * kTickRate;  // [ticks]
+constexpr double kTurn = 1e-4;                                      // [m] back from the farthest point: it was a turning point
+constexpr std::int64_t kSwingWithin = std::int64_t{2} * kTickRate;  // [ticks]
 
 }  // namespace
 
