@@ -159,14 +159,14 @@ def session_lines() -> Iterator[dict]:
     return session.lines(sys.stdin.read())
 
 
-def main() -> int:
+def main(arguments: Optional[list[str]] = None) -> int:
     parser = argparse.ArgumentParser(description="Decode a Tactus stream file from standard input to JSON lines.")
     parser.add_argument("--replica", choices=("none", "device", "linear", "hermite", "blending", "playout"),
                         help="also show what a client shows")
     parser.add_argument("--session", action="store_true", help="read a script for the client's end of a session instead")
-    arguments = parser.parse_args()
+    options = parser.parse_args(arguments)
     try:
-        for line in session_lines() if arguments.session else lines(sys.stdin.buffer.read(), arguments.replica):
+        for line in session_lines() if options.session else lines(sys.stdin.buffer.read(), options.replica):
             print(json.dumps(line, separators=(",", ":")))
     except StreamError as error:
         print(json.dumps({"error": {"errc": error.errc, "rule": error.rule}}, separators=(",", ":")))

@@ -15,9 +15,10 @@ import subprocess
 import sys
 import tempfile
 import threading
+import traceback
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import NamedTuple, Optional
+from typing import IO, Callable, NamedTuple, NoReturn, Optional, Union
 
 from packs import Part, unpack, with_repeat
 
@@ -52,12 +53,46 @@ class Result(NamedTuple):
 
 
 # ---- Testee ---------------------------------------------------------------------------------------------------------
+class Fork:
+    """A decoder's main() in a process of its own that is a copy of this one: starting Python anew takes longer than most cases."""
+
+    def __init__(self, main: Callable[[list[str]], int], arguments: list[str], stdin: IO[bytes]):
+        reading, writing = os.pipe()
+        self.pid = os.fork()
+        if self.pid == 0:
+            self.run(main, arguments, stdin.fileno(), writing)
+        os.close(writing)
+        self.stdout = open(reading, "rb")
+
+    @staticmethod
+    def run(main: Callable[[list[str]], int], arguments: list[str], reading: int, writing: int) -> NoReturn:
+        status = 1
+        try:
+            os.setsid()
+            os.dup2(reading, 0)
+            os.dup2(writing, 1)
+            sys.stdin, sys.stdout = open(0), open(1, "w")
+            status = main(arguments)
+            sys.stdout.flush()
+        except BaseException:
+            traceback.print_exc()
+        finally:
+            os._exit(status)
+
+    def wait(self) -> int:
+        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+
+
 def run_testee(command: list[str], data: bytes) -> tuple[int, list[str]]:
     """Returns the exit status, 0 or 1, and the lines of JSON on standard output."""
+    return reply_of(lambda stdin: subprocess.Popen(command, stdin=stdin, stdout=subprocess.PIPE, start_new_session=True), data)
+
+
+def reply_of(start: Callable[[IO[bytes]], Union[subprocess.Popen, Fork]], data: bytes) -> tuple[int, list[str]]:
     with tempfile.TemporaryFile() as stdin:
         stdin.write(data)
         stdin.seek(0)
-        process = subprocess.Popen(command, stdin=stdin, stdout=subprocess.PIPE, start_new_session=True)
+        process = start(stdin)
     late = threading.Event()
 
     def stop() -> None:
@@ -84,7 +119,7 @@ def run_testee(command: list[str], data: bytes) -> tuple[int, list[str]]:
     return status, json_lines(output)
 
 
-def kill(process: subprocess.Popen) -> None:
+def kill(process: Union[subprocess.Popen, Fork]) -> None:
     """Ends the testee and all that it started."""
     try:
         os.killpg(process.pid, signal.SIGKILL)
@@ -215,17 +250,28 @@ def known_failures(root: Path) -> set[str]:
     return {line.strip() for line in lines if line.strip() and not line.startswith("#")}
 
 
-def judge(case: Case, command: list[str], known: bool) -> Result:
+Testee = Callable[[list[str], bytes], tuple[int, list[str]]]  # of a case's arguments and input
+
+
+def make_testee(command: Optional[str]) -> Testee:
+    if command:
+        return lambda arguments, data: run_testee(shlex.split(command) + arguments, data)
+    import decoder                                          # beside this file
+    import session  # noqa: F401                            # which it imports late
+    return lambda arguments, data: reply_of(lambda stdin: Fork(decoder.main, arguments, stdin), data)
+
+
+def judge(case: Case, testee: Testee, known: bool) -> Result:
     """A failure that is known is skipped, one that is known and does not happen is a failure."""
     try:
-        check_reply(case, *run_testee(command + case.args, read_input(case)))
+        check_reply(case, *testee(case.args, read_input(case)))
     except (Crash, Mismatch) as error:
         kind = "crash: " if isinstance(error, Crash) else ""
         return Result(case.id, "skip" if known else "fail", kind + str(error))
     return Result(case.id, "fail", "passes; take it off known-failures.txt") if known else Result(case.id, "pass", "")
 
 
-def run_suite(root: Path, command: list[str], only: str, without: set[str]) -> list[Result]:
+def run_suite(root: Path, testee: Testee, only: str, without: set[str]) -> list[Result]:
     cases, results = load_cases(root)
     known = known_failures(root)
     results += [Result(i, "fail", "in known-failures.txt, but no case") for i in sorted(known - {case.id for case in cases})]
@@ -234,7 +280,7 @@ def run_suite(root: Path, command: list[str], only: str, without: set[str]) -> l
     chosen = [case for case in cases if fnmatchcase(case.id, only) and not case.traits & without]
     if cases and not chosen:
         results.append(Result(only, "fail", "matches no case"))
-    return results + [judge(case, command, case.id in known) for case in chosen]
+    return results + [judge(case, testee, case.id in known) for case in chosen]
 
 
 def main(arguments: list[str], root: Path) -> int:
@@ -246,13 +292,11 @@ def main(arguments: list[str], root: Path) -> int:
     parser.add_argument("--json", action="store_true", help="print the results as one JSON object, the counts on standard error")
     parser.add_argument("--unpack", metavar="DIR", type=Path, help="write every input and answer as a file of its own, and run nothing")
     options = parser.parse_args(arguments)
-    here = Path(__file__).resolve().parent
     try:
         if options.unpack:
             print(f"{unpack(root, options.unpack)} cases written to {options.unpack}")
             return 0
-        command = shlex.split(options.testee) if options.testee else [sys.executable, str(here / "decoder.py")]
-        results = run_suite(root, command, options.only, set(options.without))
+        results = run_suite(root, make_testee(options.testee), options.only, set(options.without))
     except (OSError, ValueError, KeyError) as error:
         print(f"run.py: {error}", file=sys.stderr)
         return 2
