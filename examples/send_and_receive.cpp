@@ -24,6 +24,6 @@ int main() {
     const tactus::Pose shown = tactus::to_pose(receiver->replica().pose(1, tick), (*scene)->grid.position);
     worst = std::max(worst, tactus::norm(shown.position - truth[1].pose.position));
   }
-  std::printf("at most %.2f mm off, 6 mm are allowed\n", 1e3 * worst);
-  return worst <= 0.006 ? 0 : 1;
+  std::printf("at most %.3f mm off, 0.3 mm are allowed\n", 1e3 * worst);
+  return worst <= 3e-4 ? 0 : 1;
 }

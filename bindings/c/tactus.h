@@ -122,9 +122,9 @@ typedef struct tactus_rigid_bounds {
   uint32_t size;
   int32_t haptic;          /* TACTUS_HAPTIC_...; isotropic */
   double heartbeat;        /* s; 1; 0: off */
-  double visual_position;  /* m; 0.006 */
+  double visual_position;  /* m; 3e-4 */
   double visual_rotation;  /* rad; 2 deg */
-  double weber_fraction;   /* p; 0.08 */
+  double weber_fraction;   /* p; 0.04 */
   double perceptual_share; /* 1 */
   double cone_angle;       /* rad; 2.1 deg */
   double fixed_position;   /* m; 0.0015 */
@@ -135,8 +135,8 @@ typedef struct tactus_rigid_bounds {
 typedef struct tactus_deformable_bounds {
   uint32_t size;
   int32_t haptic;        /* 1; 0: no haptic threshold */
-  double visual;         /* m; 2.5e-4: v of every vertex */
-  double weber_fraction; /* 0.025: p of h = p f / k_c around a touch */
+  double visual;         /* m; 3e-4: v of every vertex */
+  double weber_fraction; /* 0.04: p of h = p f / k_c around a touch */
   double depth_floor;    /* m; 2e-4: lower limit of f / k_c */
   int32_t kept;          /* answers only: 0: the stream aims at its bounds (profile thesis) */
   int32_t reserved;

@@ -222,7 +222,7 @@ void setup_encode(Command& app, Action& action) {
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
-      "  tactus encode push.mcap -o push.tct -p 4% --visual 6mm,2deg\n"
+      "  tactus encode push.mcap -o push.tct -p 8% --visual 6mm,2deg\n"
       "  tactus encode arm.mcap -o arm.tct -p 4% --contact hand=cup,k=500N/m\n"
       "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off --gravity 9.81 --friction 0.25\n"
       "  tactus encode membrane.mcap -o membrane.tct -p 2.5% --deformable-visual 0.25mm --basis 48 --plot membrane.svg\n"

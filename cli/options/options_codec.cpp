@@ -73,9 +73,9 @@ void TriggerArguments::add_to(Command& app) {
                                                 {"off", HapticRule::off}};
   const auto rule = [this, rules](const std::string& name) { triggers_.haptic = rules.at(name); };
   deadband_ = add_quantity(app, "-p,--deadband", triggers_.weber_fraction, Dimension::fraction,
-                           "Weber fraction: largest relative error of the normal force in contact [8%, deformable objects 2.5%]");
+                           "Weber fraction: largest relative error of the normal force in contact [4%]");
   visual_option_ =
-      add_pose_bound(app, "--visual", visual_, "Visual threshold: largest shown error of position and rotation [6mm,2deg]");
+      add_pose_bound(app, "--visual", visual_, "Visual threshold: largest shown error of position and rotation [0.3mm,2deg]");
   fixed_option_ = add_pose_bound(app, "--fixed", fixed_, "Largest pose error in contact with --haptic fixed [1.5mm,2deg]");
   length_unit_option_ = add_quantity(app, "--length-unit", length_unit_, Dimension::length,
                                      "Unit of lengths given without one in --visual and --fixed [none: lengths need their unit]")
@@ -92,7 +92,7 @@ void TriggerArguments::add_to(Command& app) {
   alpha_ =
       add_quantity(
           app, "--alpha", triggers_.cone_angle, Dimension::angle,
-          "Largest error of the normal force's direction with --haptic cone [arcsin of -p, what isotropic allows: 4.59deg at 8%]")
+          "Largest error of the normal force's direction with --haptic cone [arcsin of -p, what isotropic allows: 2.29deg at 4%]")
           ->check(within(Dimension::angle, "0.001deg", "180deg"));
   share_ = add_quantity(app, "--jnd-share", triggers_.perceptual_share, Dimension::fraction,
                         "Part of what people notice that --haptic perceptual permits, 1% or more [100%]")
@@ -181,7 +181,7 @@ void MotionArguments::add_to(Command& app) {
 
 void MeshArguments::add_to(Command& app) {
   visual_ = add_quantity(app, "--deformable-visual", thresholds_.visual, Dimension::length,
-                         "Visual threshold of a vertex of a deformable object, 0: exact to the grid [0.25mm]")
+                         "Visual threshold of a vertex of a deformable object, 0: exact to the grid [0.3mm]")
                 ->check(within(Dimension::length, "0m", "1000000m"));
   rings_ =
       app.add_option("--rings", coding_.rings,

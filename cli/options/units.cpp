@@ -134,7 +134,7 @@ tl::expected<Quantity, std::string> parse_quantity(std::string_view typed, Dimen
 tl::expected<PoseBound, std::string> parse_pose_bound(std::string_view text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string_view::npos)
-    return tl::unexpected(fmt::format("'{}': give a length and an angle, such as 6mm,2deg", text));
+    return tl::unexpected(fmt::format("'{}': give a length and an angle, such as 0.3mm,2deg", text));
   TACTUS_TRY(const auto length, parse_quantity(text.substr(0, comma), Dimension::length, Bare::allowed));
   TACTUS_TRY(const auto angle, parse_quantity(text.substr(comma + 1), Dimension::angle));
   return PoseBound{length, angle};

@@ -23,7 +23,7 @@ enum class Bare { refused, allowed };
 ///      is too easily meant in millimetres, a 2 in degrees, a 500 in milliseconds. Only 0 needs none.
 tl::expected<Quantity, std::string> parse_quantity(std::string_view typed, Dimension dimension, Bare bare = Bare::refused);
 
-/// A length and an angle, "6mm,2deg"; blanks may stand between. The length may be bare: needs_unit() refuses it where no option
+/// A length and an angle, "0.3mm,2deg"; blanks may stand between. The length may be bare: needs_unit() refuses it where no option
 /// says its unit.
 struct PoseBound {
   Quantity length;

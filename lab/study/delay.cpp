@@ -20,7 +20,7 @@ SimulationOptions options_of(const DelayCase& one) {
   ChannelOptions& channel = options.channel.emplace();
   channel.own = one.own;
   channel.coding.rigid = RigidProfile::thesis;
-  channel.sender.triggers.reduction = Reduction::none;
+  channel.sender.triggers = {.reduction = Reduction::none, .visual_position = 6e-3, .weber_fraction = 0.08};
   channel.sender.load = {.weber_fraction = 0.02, .force_floor = 0.5};
   channel.network = [link = one.link](SharedScene scene, std::size_t users,
                                       const SenderOptions& sender) -> Result<std::unique_ptr<Network>> {

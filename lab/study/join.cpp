@@ -49,7 +49,7 @@ class Line {
     options.clients = 2;
     options.rate = of.limit;
     options.addresses_are_proven = of.sealed;
-    options.sender.triggers.haptic = HapticRule::off;
+    options.sender.triggers = {.visual_position = 6e-3, .haptic = HapticRule::off};
     TACTUS_TRY(auto server, SessionServer::create(std::move(scene), options, of.seed, kStart));
     Line out(std::move(server));
     out.tag_ = of.sealed ? 29 : 9;

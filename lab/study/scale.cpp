@@ -165,6 +165,7 @@ class World {
     options.clients = of.clients;
     options.works_elsewhere = true;
     options.sender.triggers.haptic = HapticRule::off;
+    options.sender.triggers.visual_position = 6e-3;
     TACTUS_TRY(auto server, SessionServer::create(std::move(scene), options, of.seed, kStart));
     return World(of, std::move(server));
   }

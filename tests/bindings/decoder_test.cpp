@@ -145,8 +145,8 @@ TEST(CDecoder, SceneTellsWhatItHolds) {
   auto load = sized<tactus_load_bounds>();
   ASSERT_EQ(tactus_scene_get_rigid_bounds(scene.get(), &rigid, nullptr), TACTUS_OK);
   ASSERT_EQ(tactus_scene_get_deformable_bounds(scene.get(), 0, &deformable, nullptr), TACTUS_OK);
-  EXPECT_EQ(rigid.weber_fraction, 0.08);
-  EXPECT_EQ(deformable.visual, 2.5e-4);
+  EXPECT_EQ(rigid.weber_fraction, 0.04);
+  EXPECT_EQ(deformable.visual, 3e-4);
   EXPECT_EQ(deformable.kept, 1);
   EXPECT_EQ(tactus_scene_get_load_bounds(scene.get(), &load, nullptr), TACTUS_NOTHING);
 }

@@ -92,6 +92,7 @@ bool run(const Case& c) {
   const auto scene = std::move(builder).build();
   if (!scene) return false;
   SenderOptions options;
+  options.triggers.visual_position = 6e-3;
   options.triggers.haptic = c.rule;
   options.triggers.weber_fraction = c.p;
   options.triggers.reduction = c.reduction;

@@ -125,7 +125,7 @@ bool run(const char* name, const Setting& setting) {
   const TriMesh mesh = sheet();
   const SharedScene scene = scene_of(mesh, setting);
   SenderOptions options;
-  options.deformable.thresholds.visual = setting.visual;
+  options.deformable.thresholds = {.visual = setting.visual, .weber_fraction = 0.025};
   options.policy.key_interval = 1;
   auto sender = Sender::create(scene, options);
   auto receiver = Receiver::create(scene);

@@ -92,14 +92,16 @@ Delivered deliver(const SharedScene& scene, const SenderOptions& options, const 
   return out;
 }
 
+const RigidTriggers kBounds{.visual_position = 6e-3, .weber_fraction = 0.08};
+
 SenderOptions acknowledged(const DeformableThresholds& thresholds = {}) {
-  return {.triggers = {},
+  return {.triggers = kBounds,
           .deformable = {.thresholds = thresholds},
           .policy = {.key_interval = 0, .baseline = Baseline::acknowledged}};
 }
 
 /// The same channel stops a stream whose packets build on the one before.
-SenderOptions previous() { return {.triggers = {}, .deformable = {}, .policy = {.key_interval = 0}}; }
+SenderOptions previous() { return {.triggers = kBounds, .deformable = {}, .policy = {.key_interval = 0}}; }
 
 const Channel kChannels[] = {{0, 0, 0, 0}, {0.3, 0, 0, 0}, {0.3, 2, 3, 0.2}, {0.5, 3, 6, 0.3}};
 
@@ -130,10 +132,10 @@ TEST(AcknowledgedBaselines, NoLossStopsRigidObjects) {
         const RigidPose held = named ? predictor.pose(receiver.object(i), packet.tick) : receiver.replica().pose(i, packet.tick);
         const Pose shown = to_pose(held, scene->grid.position);
         const Pose& pose = truly[i].pose;
-        const bool seen = norm(shown.position - pose.position) <= RigidTriggers{}.visual_position &&
-                          angle_between(shown.rotation, pose.rotation) <= RigidTriggers{}.visual_rotation;
+        const bool seen = norm(shown.position - pose.position) <= kBounds.visual_position &&
+                          angle_between(shown.rotation, pose.rotation) <= kBounds.visual_rotation;
         const Contact contact = testing::touch(1, pose, 0.002);
-        const bool felt = i != 1 || haptic_ratio({}, contact_force(contact, pose), contact_force(contact, shown)) <= 1;
+        const bool felt = i != 1 || haptic_ratio(kBounds, contact_force(contact, pose), contact_force(contact, shown)) <= 1;
         broken += seen && felt ? 0u : 1u;
       }
     };

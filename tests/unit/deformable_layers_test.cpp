@@ -331,7 +331,7 @@ TEST(DeformableLayers, ThesisListsWhatIsFeltInAPacketOfItsOwn) {
     before.assign(shown.begin(), shown.end());
     watch.look(frame, shown);
   }
-  EXPECT_LT(watch.worst(), 2.5e-4 + 1e-6);
+  EXPECT_LT(watch.worst(), DeformableThresholds{}.visual + 1e-6);
   EXPECT_GT(ends.layers[0], 100U);
   EXPECT_GT(ends.layers[1], 100U);
   EXPECT_EQ(ends.layers[2], 0U);

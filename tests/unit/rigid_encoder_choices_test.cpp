@@ -168,8 +168,7 @@ int packets(const SharedScene& scene, std::int64_t ticks, const Samples& sample_
 /// The velocity that is told leads to an error of 0.6 of the bound on the one side, if the acceleration fades as is taken.
 TEST(Leaning, LeadsToTheShareOfTheBoundThatIsTaken) {
   constexpr double kTau = 0.03, kMargin = 0.6;
-  RigidTriggers triggers;
-  triggers.haptic = HapticRule::off;
+  const RigidTriggers triggers{.visual_position = 6e-3, .haptic = HapticRule::off};
   for (const double acceleration : {0.3, 1.0, 3.0, 10.0, 40.0}) {
     const SharedScene scene = scene_of(1);
     const Acceleration fall = after_three_ticks(*scene, acceleration);
@@ -381,9 +380,11 @@ TEST(ErrorShare, TheNarrowestBoundCounts) {
   EXPECT_EQ(ErrorShare(0, {}, contacts, seen)({0, 0, 0.001}, {}), free({0, 0, 0.001}, {})) << "of another object, and of none";
   contacts[0].object = 0;
   EXPECT_NEAR(ErrorShare(0, {}, contacts, {.weber_fraction = 0.1})({0, 0, 0.0005}, {}), 5, 1e-9) << "0.5 N off at 1 N";
-  EXPECT_NEAR(ErrorShare(0, {}, contacts, {.haptic = HapticRule::fixed, .fixed_position = 0.001})({0.0005, 0, 0}, {}), 0.5, 1e-9);
+  EXPECT_NEAR(ErrorShare(0, {}, contacts, {.visual_position = 6e-3, .haptic = HapticRule::fixed, .fixed_position = 0.001})(
+                  {0.0005, 0, 0}, {}),
+              0.5, 1e-9);
   EXPECT_NEAR(ErrorShare(0, {}, contacts, {.haptic = HapticRule::cone, .cone_angle = 0.01})({}, {0.005, 0, 0}), 0.5, 1e-9);
-  EXPECT_LT(ErrorShare(0, {}, contacts, {.haptic = HapticRule::off})({0, 0, 0.0005}, {}), 0.1);
+  EXPECT_LT(ErrorShare(0, {}, contacts, {.visual_position = 6e-3, .haptic = HapticRule::off})({0, 0, 0.0005}, {}), 0.1);
 }
 
 /// What is permitted at a force that sinks by a tenth per 10 ms, down to what is permitted at the floor; what is seen stays.

@@ -166,7 +166,7 @@ TEST(SessionServer, RoundTripAndClockAreMeasured) {
   for (const std::uint64_t clock : {std::uint64_t{0}, std::uint64_t{7'654'321'012}}) {
     for (const double loss : {0.0, 0.05}) {
       Show show(1, false);
-      SessionWorld world(show.scene, {});
+      SessionWorld world(show.scene, {.sender = {.triggers = {.visual_position = 6e-3}}});
       const auto way = [loss](std::uint64_t seed) {
         return sim::LinkOptions{.seed = seed, .delay = 20'000, .jitter = 5'000, .loss = loss};
       };

@@ -66,7 +66,7 @@ TEST(Viewer, TheGhostIsWithinATwentiethOfTheBounds) {
   EXPECT_DOUBLE_EQ(ghost.rigid.visual_position, 1e-4);
   EXPECT_DOUBLE_EQ(ghost.rigid.visual_rotation, 5e-3);
   EXPECT_EQ(ghost.rigid.haptic, HapticRule::off);
-  EXPECT_DOUBLE_EQ(ghost.deformable.visual, 1.25e-5);
+  EXPECT_DOUBLE_EQ(ghost.deformable.visual, 1.5e-5);
   const auto fine = SceneBuilder().rigid("cube").promise({.visual_position = 1e-5, .visual_rotation = 1e-4}, {}).build();
   ASSERT_TRUE(fine);
   EXPECT_GE(ghost_bounds(**fine).rigid.visual_position, 4e-6);  // the grid can hold it

@@ -29,9 +29,9 @@ class RigidBounds(_abi.tactus_rigid_bounds):
 
     haptic            HAPTIC_OFF, _ISOTROPIC (default), _CONE, _FIXED or _PERCEPTUAL
     heartbeat         [s] 1
-    visual_position   [m] 0.006
+    visual_position   [m] 3e-4
     visual_rotation   [rad] 2 deg
-    weber_fraction    p of the normal force, 0.08
+    weber_fraction    p of the normal force, 0.04
     perceptual_share, cone_angle [rad], fixed_position [m], fixed_rotation [rad], force_floor [N]   see tactus.h
     """
 
@@ -45,9 +45,9 @@ class RigidBounds(_abi.tactus_rigid_bounds):
 class DeformableBounds(_abi.tactus_deformable_bounds):
     """Errors of deformable objects that call for an update.
 
-    visual          v of every vertex [m], 2.5e-4
+    visual          v of every vertex [m], 3e-4
     haptic          1; 0: no haptic threshold
-    weber_fraction  p of h = p f / k_c around a touch, 0.025
+    weber_fraction  p of h = p f / k_c around a touch, 0.04
     depth_floor     [m] lower limit of f / k_c, 2e-4
     """
 
