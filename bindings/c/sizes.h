@@ -44,7 +44,7 @@ TACTUS_SIZED(tactus_rigid_info, TACTUS_UP_TO(tactus_rigid_info, initial));
 TACTUS_SIZED(tactus_deformable_info, TACTUS_UP_TO(tactus_deformable_info, reserved));
 TACTUS_SIZED(tactus_receiver_options, TACTUS_UP_TO(tactus_receiver_options, limits));
 TACTUS_SIZED(tactus_scene_options, TACTUS_UP_TO(tactus_scene_options, friction),
-             TACTUS_UP_TO(tactus_scene_options, interest_reach));
+             TACTUS_UP_TO(tactus_scene_options, interest_reach), TACTUS_UP_TO(tactus_scene_options, limits));
 TACTUS_SIZED(tactus_deformable_options, TACTUS_UP_TO(tactus_deformable_options, blend));
 TACTUS_SIZED(tactus_driven_physics, TACTUS_UP_TO(tactus_driven_physics, damping));
 TACTUS_SIZED(tactus_elastic_physics, TACTUS_UP_TO(tactus_elastic_physics, friction),

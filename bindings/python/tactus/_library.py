@@ -23,11 +23,12 @@ class Error(Exception):
     remedy      a sentence on how to fix it; may be empty
     advice      how a receiver reacts: "none", "drop", "request_key" or "close"
     subject     file or object that it concerns; may be empty
+    detail      figures and a remedy of this particular case, in place of the remedy in the text; may be empty
     words       what is wrong in this particular case: file, topic or row, time, value, remedy; may be empty
     """
 
-    def __init__(self, error: Any, subject: str = "", words: str = "") -> None:
-        self._of = (error.status, error.rule, error.bit_offset, subject, words)
+    def __init__(self, error: Any, subject: str = "", words: str = "", detail: str = "") -> None:
+        self._of = (error.status, error.rule, error.bit_offset, subject, words, detail)
         library = core()
         told = ctypes.byref(error)
         self.name: str = library.tactus_status_name(error.status).decode()
@@ -36,20 +37,20 @@ class Error(Exception):
         self.bit_offset: int = error.bit_offset
         self.remedy: str = library.tactus_error_remedy(told).decode()
         self.advice: str = ("none", "drop", "request_key", "close")[library.tactus_error_advice(told)]
-        self.subject, self.words = subject, words
+        self.subject, self.words, self.detail = subject, words, detail
         place = f" at byte {self.bit_offset // 8}" if self.bit_offset else ""
         text = library.tactus_error_text(told).decode()
         subject = f"{subject}: " if subject else ""
-        super().__init__(words or f"{subject}{text}{place} ({self.name}, {self.rule}). {self.remedy}".rstrip())
+        super().__init__(words or f"{subject}{text}{place} ({self.name}, {self.rule}). {detail or self.remedy}".rstrip())
 
     def __reduce__(self) -> Any:  # workers of multiprocessing send it to their parent
         return _error_of, self._of
 
 
-def _error_of(status: int, rule: bytes | None, bit_offset: int, subject: str, words: str) -> Error:
+def _error_of(status: int, rule: bytes | None, bit_offset: int, subject: str, words: str, detail: str) -> Error:
     error = _abi.tactus_error()
     error.status, error.rule, error.bit_offset = status, rule, bit_offset
-    return Error(error, subject, words)
+    return Error(error, subject, words, detail)
 
 
 def refusal(rule: str, subject: str, name: str = "TACTUS_INVALID_ARGUMENT") -> Error:
