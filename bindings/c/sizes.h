@@ -60,7 +60,7 @@ TACTUS_SIZED(tactus_trace_info, TACTUS_UP_TO(tactus_trace_info, source));
 TACTUS_SIZED(tactus_trace_object, TACTUS_UP_TO(tactus_trace_object, name));
 TACTUS_SIZED(tactus_trace_user, TACTUS_UP_TO(tactus_trace_user, name), TACTUS_UP_TO(tactus_trace_user, reserved));
 TACTUS_SIZED(tactus_trace_mesh, TACTUS_UP_TO(tactus_trace_mesh, name));
-TACTUS_SIZED(tactus_trace_coding, TACTUS_UP_TO(tactus_trace_coding, deformable));
+TACTUS_SIZED(tactus_trace_coding, TACTUS_UP_TO(tactus_trace_coding, deformable), TACTUS_UP_TO(tactus_trace_coding, world_size));
 TACTUS_SIZED(tactus_errors_options, TACTUS_UP_TO(tactus_errors_options, deformable));
 TACTUS_SIZED(tactus_error_summary, TACTUS_UP_TO(tactus_error_summary, worst_ratio));
 TACTUS_SIZED(tactus_mesh_summary, TACTUS_UP_TO(tactus_mesh_summary, worst_ratio));

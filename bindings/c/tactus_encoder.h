@@ -35,8 +35,7 @@ typedef struct tactus_scene_options {
   /* m: how far from the origin positions get, along any axis. The position grid becomes as fine as that permits, and none finer than
      position_exp; _build refuses a world too large for the promised bounds. 0: as position_exp is: 2^(31 - position_exp) m, 512 m */
   double world_size;
-  const tactus_limits*
-      limits; /* of the receivers, which must be given the same: of a scene of more than 4096 objects. NULL: defaults */
+  const tactus_limits* limits; /* of all its receivers: for more than 4096 objects, say. NULL: defaults */
 } tactus_scene_options;
 
 typedef struct tactus_deformable_options {

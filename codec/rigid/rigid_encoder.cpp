@@ -90,7 +90,7 @@ SmallError error_of(const Pose& truth, const Pose& shown) noexcept {
 
 bool are_valid(const RigidTriggers& t) noexcept {
   return std::isfinite(t.heartbeat) && t.heartbeat >= 0 && t.heartbeat <= 3600 && t.weber_fraction > 0 && t.weber_fraction <= 1 &&
-         std::isfinite(t.perceptual_share) && t.perceptual_share > 0 && std::isfinite(t.force_floor) && t.force_floor > 0 &&
+         t.perceptual_share > 0 && t.perceptual_share <= 1 && std::isfinite(t.force_floor) && t.force_floor > 0 &&
          std::isfinite(t.cone_angle) && t.cone_angle > 0 && t.cone_angle <= std::numbers::pi;
 }
 

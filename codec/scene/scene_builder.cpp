@@ -119,8 +119,8 @@ Result<ElasticBody> on_grid(ElasticPhysics physics, unsigned position_exp) {
 template <class Promise>
 bool are_fractions(const Promise& promise) noexcept {
   const auto fits = [](double p) { return p >= 0 && p <= 1; };  // false for NaN
-  return fits(promise.rigid.weber_fraction) && fits(promise.deformables.weber_fraction.value_or(0)) &&
-         fits(promise.loads.weber_fraction);
+  return fits(promise.rigid.weber_fraction) && fits(promise.rigid.perceptual_share) &&
+         fits(promise.deformables.weber_fraction.value_or(0)) && fits(promise.loads.weber_fraction);
 }
 
 /// A number for people.

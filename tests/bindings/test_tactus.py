@@ -428,6 +428,20 @@ def test_an_error_of_a_worker_arrives_in_its_parent(tmp_path):
     assert str(again) == str(refused.value) and vars(again) == vars(refused.value)
 
 
+def test_paths_are_text_path_objects_or_bytes(tmp_path):
+    recording = tactus.Trace.from_arrays(np.arange(50) / 100, poses={"cup": (np.zeros((50, 3)), np.tile([1.0, 0, 0, 0], (50, 1)))})
+    for place in (str(tmp_path / "text.mcap"), tmp_path / "object.mcap", os.fsencode(tmp_path / "\u00e9.mcap")):
+        recording.save(place)
+        assert len(tactus.read_trace(place).ticks) == 50
+        stream = tactus.encode(place)
+        saved = os.fsencode(place) + b".tct" if isinstance(place, bytes) else pathlib.Path(str(place) + ".tct")
+        stream.save(saved)
+        assert tactus.decode(saved).poses.shape == tactus.decode(stream).poses.shape and tactus.compare(place, saved).holds
+    with pytest.raises(tactus.Error) as refused:
+        tactus.read_trace(b"no trace")
+    assert refused.value.rule == "R-TRC-2"
+
+
 def test_bytes_are_read_where_a_path_would_be(tmp_path):
     with pytest.raises(tactus.Error) as refused:
         tactus.read_trace(bytes(100_000))

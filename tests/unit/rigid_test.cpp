@@ -323,6 +323,8 @@ TEST(Rigid, OptionsOutsideTheirRangeAreRefused) {
   EXPECT_EQ(rule([](auto& o) { o.triggers.visual_position = 1e-7; }), "R-API-4") << "finer than the grid";
   EXPECT_EQ(rule([](auto& o) { o.triggers.visual_rotation = 4; }), "R-API-4");
   EXPECT_EQ(rule([](auto& o) { o.triggers.weber_fraction = 0; }), "R-API-4");
+  EXPECT_EQ(rule([](auto& o) { o.triggers.weber_fraction = 4; }), "R-API-4") << "400 %";
+  EXPECT_EQ(rule([](auto& o) { o.triggers.perceptual_share = 4; }), "R-API-4") << "of what people notice";
   EXPECT_EQ(rule([&](auto& o) { o.triggers.weber_fraction = nan; }), "R-API-4");
   EXPECT_EQ(rule([&](auto& o) { o.triggers.visual_position = nan; }), "R-API-4");
   EXPECT_EQ(rule([](auto& o) { o.triggers.heartbeat = -1; }), "R-API-4");

@@ -373,7 +373,7 @@ TEST(Held, ABadContactDoesNotCount) {
        spared = Sender::create(scene, {.triggers = triggers}).value();
   testing::Motion motion(3);
   const std::function<void(Contact&)> wrongs[] = {
-      [](Contact& c) { c.device.x = kNan; },
+      [](Contact& c) { c.kind = ContactKind::spring, c.device.x = kNan; },
       [](Contact& c) { c.stiffness = -1; },
       [](Contact& c) { c.object = 2; },
       [](Contact& c) {
@@ -388,7 +388,10 @@ TEST(Held, ABadContactDoesNotCount) {
       samples[0] = motion.step(1e-3);
       const Contact good = testing::touch(0, samples[0].pose, 0.002);
       std::vector<Contact> contacts(20, good);
-      for (std::size_t k = 1; k < contacts.size(); ++k) change(contacts[k]);
+      for (std::size_t k = 1; k < contacts.size(); ++k) {
+        contacts[k] = testing::touch(0, samples[0].pose, 1e-4);  // a small force, which would have a small bound
+        change(contacts[k]);
+      }
       const auto packets = all(sender.encode(tick, {samples, contacts}));
       ASSERT_EQ(bytes_of(packets), bytes_of(all(spared.encode(tick, {samples, {&good, 1}})))) << tick;
       ASSERT_EQ(sender.held().size(), 16u) << "no more are told";

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import operator
+import os
 import pathlib
 from typing import Any
 
@@ -88,6 +89,13 @@ def text_of(text: bytes) -> bytes:
 def bytes_of(data: Any) -> bytes:
     """Of bytes and whatever else holds some, in one row."""
     return data if isinstance(data, bytes) else bytes(memoryview(data).cast("B"))
+
+
+def path_of(file: str | os.PathLike[Any] | bytes) -> str | None:
+    """The path that is meant; None: these are the bytes of a file. Bytes that name a file are its path, as for open()."""
+    if isinstance(file, (bytearray, memoryview)) or (isinstance(file, bytes) and (len(file) > 4096 or not os.path.isfile(file))):
+        return None
+    return os.fsdecode(file)
 
 
 class _Library:

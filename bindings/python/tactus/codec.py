@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import NO_CLOCK, Handle, answer, bytes_of, call, core, handle_of, read_bytes
+from ._library import NO_CLOCK, Handle, answer, bytes_of, call, core, handle_of, path_of, read_bytes
 from .options import ReceiverOptions, SenderOptions
 from .scene import Scene
 
@@ -290,9 +290,9 @@ class Player(Handle, _Shown):
 
     def __init__(self, file: str | os.PathLike[str] | bytes, **options: Any) -> None:
         super().__init__()
-        is_data = isinstance(file, (bytes, bytearray, memoryview))
-        self._subject = "" if is_data else os.fspath(file)
-        self._bytes = bytes_of(file) if is_data else pathlib.Path(file).read_bytes()  # the player reads it in place
+        path = path_of(file)
+        self._subject = path or ""
+        self._bytes = bytes_of(file) if path is None else pathlib.Path(path).read_bytes()  # the player reads it in place
         call(core().tactus_player_open, self._bytes, len(self._bytes), ReceiverOptions(**options), ctypes.byref(self._handle),
              subject=self._subject)
         self._count()
