@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <tactus/base/shown.h>
@@ -68,15 +69,19 @@ const std::string& to_blame(const Error& error, const EncodeOptions& options) {
 }
 
 /// Why a scene could not be made, with its figures.
-tl::unexpected<Failure> refuse(const SceneFinding& finding, const EncodeOptions& options) {
-  auto refused = cli::refuse(options.input, shown(finding.object), finding.error);
+tl::unexpected<Failure> refuse_scene(const SceneFinding& finding, const EncodeOptions& options) {
+  auto refused = refuse(options.input, shown(finding.object), finding.error);
   if (!finding.detail.empty()) refused.value().text += ": " + finding.detail;
+  if (finding.error.rule == std::string_view("R-API-2"))
+    refused.value().remedy = "Give the size of the world with --world-size, or check the unit (import takes --length-unit).";
+  if (!finding.detail.empty() && finding.error.rule == std::string_view("R-API-4"))
+    refused.value().remedy = "Give a smaller --world-size, or wider bounds.";
   return refused;
 }
 
 tl::expected<Session, Failure> start(const TraceInfo& info, const TraceFrame& first, const EncodeOptions& options,
                                      Clusters clusters, std::ostream& out) {
-  const auto blame = [&](const Error& error) { return cli::refuse(to_blame(error, options), error); };
+  const auto blame = [&](const Error& error) { return refuse(to_blame(error, options), error); };
   TraceCoding coding = options.meshes.coding(options.triggers);
   coding.clusters = std::move(clusters);
   const SenderOptions wanted = options.meshes.sender(options.triggers);
@@ -84,7 +89,7 @@ tl::expected<Session, Failure> start(const TraceInfo& info, const TraceFrame& fi
   if (!builder) return blame(builder.error());
   if (options.world_size > 0) builder->world_size(options.world_size);
   const auto scene = builder->motion(options.motion.physics()).build();
-  if (!scene) return refuse(scene.error(), options);
+  if (!scene) return refuse_scene(scene.error(), options);
   auto writer = StreamFileWriter::create(out, **scene);
   if (!writer) return blame(writer.error());
   auto sender = Sender::create(*scene, wanted);

@@ -158,12 +158,11 @@ std::string too_large(double metres, double bound) {
   while (finest < 30 && std::ldexp(kSteps, -static_cast<int>(finest)) > bound) ++finest;
   return "a world of " + figure(metres) + " m and a bound of " + figure(1e3 * bound) +
          " mm do not go together: such a bound wants " + figure(kSteps) + " steps of the position grid, which then reaches " +
-         figure(reach_of(finest)) + " m. Give a smaller world_size() or a wider bound";
+         figure(reach_of(finest)) + " m";
 }
 
 std::string beyond(unsigned position_exp) {
-  return "positions of this scene reach " + figure(reach_of(position_exp)) +
-         " m from the origin along each axis. Give the size of the world: world_size(metres)";
+  return "positions of this scene reach " + figure(reach_of(position_exp)) + " m from the origin along each axis";
 }
 
 struct Counts {
@@ -179,14 +178,15 @@ Counts counts_of(const SceneSpec& spec) noexcept {
 
 /// A scene is beyond the limits.
 std::string too_many(const Counts& of, const DecodeLimits& limits) {
-  const auto part = [](std::size_t count, std::uint32_t most, const char* what) {
-    return count <= most ? std::string() : std::to_string(count) + what + " where " + std::to_string(most) + " are allowed. ";
+  std::string out;
+  const auto part = [&out](std::size_t count, std::uint32_t most, const char* what) {
+    if (count > most)
+      out += (out.empty() ? "" : ", ") + std::to_string(count) + what + " where " + std::to_string(most) + " are allowed";
   };
-  return part(of.objects, limits.objects, " objects") + part(of.vertices, limits.vertices, " vertices") +
-         part(of.triangles, limits.triangles, " triangles") +
-         "Give build() DecodeLimits that allow more (C and Python: limits of the scene's options), and every receiver the same: "
-         "options "
-         "`limits` of a Receiver and of a session's client, --limit of the programs";
+  part(of.objects, limits.objects, " objects");
+  part(of.vertices, limits.vertices, " vertices");
+  part(of.triangles, limits.triangles, " triangles");
+  return out;
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ class Error(Exception):
     remedy      a sentence on how to fix it; may be empty
     advice      how a receiver reacts: "none", "drop", "request_key" or "close"
     subject     file or object that it concerns; may be empty
-    detail      figures and a remedy of this particular case, in place of the remedy in the text; may be empty
+    detail      figures of this particular case; may be empty
     words       what is wrong in this particular case: file, topic or row, time, value, remedy; may be empty
     """
 
@@ -42,7 +42,8 @@ class Error(Exception):
         place = f" at byte {self.bit_offset // 8}" if self.bit_offset else ""
         text = library.tactus_error_text(told).decode()
         subject = f"{subject}: " if subject else ""
-        super().__init__(words or f"{subject}{text}{place} ({self.name}, {self.rule}). {detail or self.remedy}".rstrip())
+        figures = f": {detail}" if detail else ""
+        super().__init__(words or f"{subject}{text}{place} ({self.name}, {self.rule}){figures}. {self.remedy}".rstrip())
 
     def __reduce__(self) -> Any:  # workers of multiprocessing send it to their parent
         return _error_of, self._of
