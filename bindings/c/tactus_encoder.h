@@ -132,7 +132,7 @@ TACTUS_API tactus_status tactus_scene_builder_promise(tactus_scene_builder* buil
 TACTUS_API tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_scene** scene, tactus_error* error);
 /* Name of the object that the last error of _build concerns; "" none. Lives until the next call of the builder. */
 TACTUS_API const char* tactus_scene_builder_culprit(const tactus_scene_builder* builder);
-/* Figures and a remedy of the case that the last error of _build is; "" none: the error's texts say all. Lives as long. */
+/* Figures of the case that the last error of _build is; "" none: the error's texts say all. Lives as long. */
 TACTUS_API const char* tactus_scene_builder_detail(const tactus_scene_builder* builder);
 
 /* ---------------------------------------------------------------- sender: truth in, packets out */

@@ -68,7 +68,7 @@ struct ElasticPhysics {
 struct SceneFinding {
   Error error;
   std::string object;    ///< empty: no particular object
-  std::string detail{};  ///< figures and a remedy of this particular case; empty: describe(error) and remedy(error) say all
+  std::string detail{};  ///< figures of this particular case; empty: describe(error) says all
   operator Error() const noexcept { return error; }
 };
 
