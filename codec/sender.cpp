@@ -15,14 +15,19 @@
 namespace tactus {
 
 struct SharedTruth::Impl {
-  Impl(const Scene& of, const RigidTriggers& triggers) : scene(of), rigid(of, triggers) {}
-  Result<void> read(std::int64_t tick, const Truth& truth) noexcept {
-    if (scene.moving().empty() && truth.objects.empty() && truth.contacts.empty()) return {};
-    return rigid.read(tick, truth.objects, truth.contacts, truth.moved);
+  Impl(const Scene& of, const RigidTriggers& triggers) : scene(of), held(of), rigid(of, triggers, held) {
+    for (std::uint32_t i = 0; i < of.deformables.size(); ++i) shapes.emplace_back(of, i, held);
+    if (of.loads) loads.emplace(of, held);
   }
+  bool fits(const Truth& truth) const noexcept;
+  Result<void> read(std::int64_t tick, const Truth& truth) noexcept;
+
   const Scene& scene;
-  SharedScene held;  // where it is shared
+  SharedScene owned;  // where it is shared
+  HeldList held;
   RigidTruth rigid;
+  std::vector<ShapeTruth> shapes;
+  std::optional<LoadTruth> loads;
   std::optional<RigidWork> work;  // where it is shared
 };
 
@@ -38,7 +43,7 @@ struct Sender::Impl {
       deformables.push_back(DeformableEncoder::create(*scene, i, options.deformable, policy));
     if (scene->loads)
       loads.emplace(*scene, policy, load_substream(*scene), max_load_packet(*scene), 1, initial_loads(*scene), *scene,
-                    options.load, policy.baseline);
+                    options.load, policy.baseline, *truth().loads);
     packets.reserve(2 + 2 * deformables.size());
   }
 
@@ -65,17 +70,36 @@ struct Sender::Impl {
   std::int64_t last_tick = -1;
 };
 
-/// Everything is looked at before anything changes.
+/// As many of everything as the scene has.
+bool SharedTruth::Impl::fits(const Truth& truth) const noexcept {
+  const bool has_objects = !scene.moving().empty() || !truth.objects.empty() || !truth.contacts.empty();
+  if (has_objects && truth.objects.size() != scene.objects.size()) return false;
+  if (!truth.deformables.empty() && truth.deformables.size() != shapes.size()) return false;
+  for (std::size_t i = 0; i < truth.deformables.size(); ++i)
+    if (const auto& shape = truth.deformables[i].displacements; !shape.empty() && shape.size() != shapes[i].components())
+      return false;
+  return loads ? loads->fits(truth.loads) : truth.loads.empty();
+}
+
+/// All counts are looked at before anything changes; nothing else stops a tick.
+Result<void> SharedTruth::Impl::read(std::int64_t tick, const Truth& truth) noexcept {
+  if (!fits(truth)) return fail(Errc::invalid_argument, "R-API-5");
+  held.begin();
+  if (truth.objects.size() == scene.objects.size()) TACTUS_CHECK(rigid.read(tick, truth.objects, truth.contacts, truth.moved));
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    shapes[i].read(tick, truth.deformables.empty() ? nullptr : &truth.deformables[i]);
+  if (loads) loads->read(tick, truth.loads);
+  held.end();
+  return {};
+}
+
 Result<void> Sender::Impl::read(std::int64_t tick, const Truth& truth) noexcept {
   if (tick <= last_tick || tick >= kTickLimit) return fail(Errc::invalid_argument, "R-API-5");
-  if (!truth.deformables.empty() && truth.deformables.size() != deformables.size())
-    return fail(Errc::invalid_argument, "R-API-5");
   if (shared && !scene->moving().empty() && shared->impl_->rigid.tick() != tick) return fail(Errc::invalid_argument, "R-API-5");
   if (own) TACTUS_CHECK(own->read(tick, truth));
-  for (std::size_t i = 0; i < truth.deformables.size(); ++i)
-    if (!truth.deformables[i].displacements.empty()) TACTUS_CHECK(deformables[i]->read(truth.deformables[i]));
-  if (loads) return loads->codec().read(tick, truth.loads);
-  if (!truth.loads.empty()) return fail(Errc::invalid_argument, "R-API-5");
+  const auto& shapes = this->truth().shapes;
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    if (shapes[i].is_new()) deformables[i]->read(shapes[i]);
   return {};
 }
 
@@ -87,8 +111,8 @@ Result<std::span<const Packet>> Sender::Impl::encode(std::optional<std::uint64_t
     TACTUS_TRY(const Packet packet, rigid.encode(tick, Layer::all, number));
     add(packet);
   }
-  for (std::size_t i = 0; i < truth.deformables.size(); ++i) {
-    if (truth.deformables[i].displacements.empty()) continue;
+  for (std::size_t i = 0; i < deformables.size(); ++i) {
+    if (!this->truth().shapes[i].is_new()) continue;
     DeformableEncoder& object = *deformables[i];
     const Packet first = object.encode(tick, object.is_layered() ? Layer::haptic : Layer::all, number);
     add(first);
@@ -127,13 +151,15 @@ Result<std::shared_ptr<SharedTruth>> SharedTruth::create(SharedScene scene, cons
   TACTUS_TRY(const SenderOptions used, checked(*scene, options));
   auto impl = std::make_unique<Impl>(*scene, used.triggers);
   impl->work.emplace(*scene);
-  impl->held = std::move(scene);
+  impl->owned = std::move(scene);
   return std::shared_ptr<SharedTruth>(new SharedTruth(std::move(impl)));
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
 
 Result<void> SharedTruth::read(std::int64_t tick, const Truth& truth) noexcept { return impl_->read(tick, truth); }
+
+std::span<const HeldPart> SharedTruth::held() const noexcept { return impl_->held.parts(); }
 
 Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options) {
   return create(std::move(scene), options, nullptr);
@@ -153,6 +179,8 @@ Result<std::span<const Packet>> Sender::encode(std::int64_t tick, const Truth& t
 Result<std::span<const Packet>> Sender::encode_numbered(std::uint64_t number, std::int64_t tick, const Truth& truth) noexcept {
   return impl_->encode(number, tick, truth);
 }
+
+std::span<const HeldPart> Sender::held() const noexcept { return impl_->truth().held.parts(); }
 
 void Sender::request_key() noexcept {
   impl_->rigid.request_key();

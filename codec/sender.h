@@ -11,6 +11,7 @@
 #include <tactus/base/result.h>
 #include <tactus/deformable/displacement.h>
 #include <tactus/load/load_state.h>
+#include <tactus/packet/held_part.h>
 #include <tactus/packet/packet.h>
 #include <tactus/packet/sender_policy.h>
 #include <tactus/rigid/rigid_state.h>
@@ -39,8 +40,8 @@ struct Truth {
   std::optional<std::span<const std::uint32_t>> moved{};
 };
 
-/// What all senders of one scene share: the rigid objects' truth of a tick and what follows from it. A server with many clients reads it
-/// once, and what its senders find out with the same states they find out once. No byte of any packet depends on it.
+/// What all senders of one scene share: the truth of a tick and what follows from it. A server with many clients reads it once, and what its
+/// senders find out with the same states they find out once. No byte of any packet depends on it.
 ///
 /// Threads: one at a time, with all its senders.
 class SharedTruth {
@@ -49,8 +50,10 @@ class SharedTruth {
   static Result<std::shared_ptr<SharedTruth>> create(SharedScene scene, const SenderOptions& options = {});
 
   /// Take the truth of a tick, before its senders encode it. The spans must stay valid until they have.
-  /// time 10 ns per object that can move, 0.2 us for one that has moved; no allocation.   err  as Sender::encode
+  /// time 10 ns per object that can move, 0.2 us for one that has moved, 3 ns per vertex of a new shape; no allocation
+  /// err  as Sender::encode
   Result<void> read(std::int64_t tick, const Truth& truth) noexcept;
+  std::span<const HeldPart> held() const noexcept;  ///< as Sender::held()
 
   SharedTruth(SharedTruth&&) = delete;
   SharedTruth& operator=(SharedTruth&&) = delete;
@@ -81,6 +84,9 @@ class SharedTruth {
 /// A key packet of a layered object drops the shape outside the area of interest until the visual packet arrives. If no client joins or
 /// seeks, key_interval 0 avoids that.
 ///
+/// Held. One bad object does not stop the others: what breaks a rule is coded as it was last, at rest, until it breaks none, and the bounds
+/// above hold for that. held() says what and since when.
+///
 /// Threads: one at a time. The scene is shared. No allocation and no exception after create().
 class Sender {
  public:
@@ -96,14 +102,18 @@ class Sender {
   ///      Result to a name before iterating over it
   /// time < 1 us per rigid object that moves, while contacts are few (each object looks at all of them); those that rest 10 ns;
   ///      O(V * (1 + modes)) per new shape, 100 us for 714 vertices and 48 modes.
-  /// err  invalid_argument R-API-1, 2, 3 a sample, displacement or force is not finite or out of range; R-API-5 wrong count,
-  ///      order of ticks, contact, triangle, force or stiffness; R-API-6 an object moved along a locked axis; R-API-7 the
-  ///      residual from the predicted pose exceeds what an update can code. An error leaves the sender unchanged.
+  /// A jump of more than 2^31 steps of the position grid, 512 m by default, takes two updates, in two ticks.
+  /// err  invalid_argument R-API-5 wrong count or order of ticks: what the caller as a whole did wrong. An error leaves the sender unchanged.
   Result<std::span<const Packet>> encode(std::int64_t tick, const Truth& truth) noexcept;
 
   /// The same for a session, which numbers its datagrams: packets do not carry their numbers.
   /// in   number  of the packets of this tick, above that of any packet before; a second packet of an object has number + 1
   Result<std::span<const Packet>> encode_numbered(std::uint64_t number, std::int64_t tick, const Truth& truth) noexcept;
+
+  /// Parts of the truth of the last encode() that are held: those that are not finite (R-API-1), off the grid (R-API-2), no rotation
+  /// (R-API-3) or off their axes (R-API-6), and contacts and touches that are none (R-API-15), 16 contacts at most. Mostly none.
+  /// out  valid until the next encode().   time 1 ns
+  std::span<const HeldPart> held() const noexcept;
 
   /// Call when a receiver refuses packets (Advice::request_key). The next packet of every substream is then a key packet, sent
   /// even if every bound holds. The rigid key packet names the objects that have left their initial state; if none has, it is

@@ -146,6 +146,8 @@ Result<std::span<const Packet>> Server::encode() noexcept {
   return sender_->encode(frame_.tick, truth());
 }
 
+std::span<const HeldPart> Server::held() const noexcept { return sender_ ? sender_->held() : std::span<const HeldPart>(); }
+
 tl::expected<void, Diagnostic> Server::step() {
   for (std::size_t i = 0; i < shares_.size(); ++i)
     for (const auto& objects : objects_) objects->push(i, shares_[i]);

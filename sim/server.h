@@ -53,6 +53,7 @@ class Server {
   void lift(std::size_t user, double share) noexcept { held_[user] = share; }
   /// Packets of this tick for the clients; valid until the next call.   err  errors of Sender::encode   no allocation
   Result<std::span<const Packet>> encode() noexcept;
+  std::span<const HeldPart> held() const noexcept;  ///< Sender::held() of them
   /// What they are made of, for the sessions.   pre  there is a codec
   Truth truth() noexcept;
   /// Apply the forces of this tick, limited to what the devices render, and advance by one tick.

@@ -151,6 +151,10 @@ tl::expected<std::span<const Packet>, Diagnostic> Simulation::step(std::span<con
   return *packets;
 }
 
+std::span<const HeldPart> Simulation::held() const noexcept {
+  return impl_->network ? impl_->network->held() : impl_->server->held();
+}
+
 const TraceFrame& Simulation::frame() const noexcept { return impl_->server->frame(); }
 std::span<const Pose> Simulation::client_poses() const noexcept { return impl_->client(0).poses(); }
 std::span<const Pose> Simulation::received_poses(std::size_t user) const noexcept { return impl_->client(user).received(); }

@@ -74,8 +74,9 @@ class Simulation {
   /// The same with one user's device, and the hands of the others.   pre  user < users of the scene
   tl::expected<std::span<const Packet>, Diagnostic> step(std::size_t user, const DeviceSample& device);
 
-  const TraceFrame& frame() const noexcept;                               ///< pre  step() was called
-  std::span<const Pose> client_poses() const noexcept;                    ///< as shown at the client in that tick, one per object
+  const TraceFrame& frame() const noexcept;             ///< pre  step() was called
+  std::span<const HeldPart> held() const noexcept;      ///< of its truth, by the sender or server: Sender::held()
+  std::span<const Pose> client_poses() const noexcept;  ///< as shown at the client in that tick, one per object
   std::span<const Pose> received_poses(std::size_t user) const noexcept;  ///< at that user's client, of shown_tick()
   const Pose& watched(std::size_t user) const noexcept;  ///< pose of the object that this user looks at, as shown
   /// The tick whose state the user's client shows: with a network one of the past, -1 before the first.

@@ -93,6 +93,15 @@ consumer() { # BUILD_DIR
   cmake -S tests/consumer/subproject -B "$scratch/subproject" -DTACTUS_SOURCE="$PWD"
   cmake --build "$scratch/subproject"
   "$scratch/subproject/consumer"
+  libraries=$(find "$scratch/subproject" -name 'libtactus*' | wc -l) # the codec's, in `all`
+  [ "$libraries" -eq 1 ] || die "a project that contains Tactus builds $libraries libraries of it"
+  [ "$(install_rules "$scratch/subproject")" -eq 0 ] || die 'a project that contains Tactus installs it without being asked'
+  cmake -S tests/consumer/subproject -B "$scratch/installs" -DTACTUS_SOURCE="$PWD" -DTACTUS_INSTALL=ON >/dev/null
+  [ "$(install_rules "$scratch/installs")" -gt 0 ] || die 'a project that contains Tactus cannot install it'
+}
+
+install_rules() { # BUILD_DIR
+  find "$1" -name cmake_install.cmake -exec cat {} + | grep -c 'file(INSTALL' || true
 }
 
 installed() { # COMPONENT

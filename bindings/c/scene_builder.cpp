@@ -13,7 +13,8 @@
 
 struct tactus_scene_builder {
   tactus::SceneBuilder builder;
-  std::string culprit{};
+  std::string culprit{}, detail{};
+  tactus::DecodeLimits limits{};
 };
 
 namespace tactus::c {
@@ -43,7 +44,9 @@ constexpr tactus_scene_options kSceneOptions{.size = sizeof(tactus_scene_options
                                              .gravity = {},
                                              .friction = 0,
                                              .interest_full = 0,
-                                             .interest_reach = 0};
+                                             .interest_reach = 0,
+                                             .world_size = 0,
+                                             .limits = nullptr};
 
 constexpr double kChosen = -1;
 constexpr std::size_t kMostShapes = 1 << 16;  ///< to find clusters on
@@ -113,6 +116,7 @@ void apply(const tactus_scene_options& o, SceneBuilder& builder) {
       .baselines(static_cast<std::uint8_t>(o.baselines))
       .rigid_profile(static_cast<RigidProfile>(o.rigid_profile))
       .motion({.gravity = vec_of(o.gravity), .friction = o.friction});
+  if (o.world_size != 0) builder.world_size(o.world_size);
   if (o.interest_full != 0 || o.interest_reach != 0) builder.interest(o.interest_full, o.interest_reach);
   if (o.has_loads != 0)
     builder.loads({.force_exp = static_cast<std::uint8_t>(o.force_exp), .users = static_cast<std::uint8_t>(o.load_users)});
@@ -224,6 +228,7 @@ tactus_status tactus_scene_builder_create(const tactus_scene_options* options, t
       return fail(Errc::invalid_argument, "R-API-4");
     auto made = std::make_unique<tactus_scene_builder>(tactus_scene_builder{SceneBuilder(o.tick_rate)});
     apply(o, made->builder);
+    TACTUS_TRY(made->limits, limits_of(o.limits));
     *builder = made.release();
     return TACTUS_OK;
   });
@@ -325,10 +330,12 @@ tactus_status tactus_scene_builder_promise(tactus_scene_builder* builder, const 
 tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_scene** scene, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     if (builder == nullptr || scene == nullptr) return refuse();
-    auto built = builder->builder.build();
+    auto built = builder->builder.build(builder->limits);
     builder->culprit.clear();
+    builder->detail.clear();
     if (!built) {
       builder->culprit = std::move(built.error().object);
+      builder->detail = std::move(built.error().detail);
       return tl::make_unexpected(built.error().error);
     }
     *scene = new tactus_scene{*std::move(built)};
@@ -338,4 +345,8 @@ tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_s
 
 const char* tactus_scene_builder_culprit(const tactus_scene_builder* builder) {
   return builder != nullptr ? builder->culprit.c_str() : "";
+}
+
+const char* tactus_scene_builder_detail(const tactus_scene_builder* builder) {
+  return builder != nullptr ? builder->detail.c_str() : "";
 }

@@ -112,6 +112,14 @@ tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const ta
   });
 }
 
+tactus_status tactus_sender_held(const tactus_sender* sender, tactus_held* out, size_t capacity, size_t* count,
+                                 tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (sender == nullptr) return refuse();
+    return copy_held(*sender->sender.scene(), sender->sender.held(), out, capacity, count);
+  });
+}
+
 tactus_status tactus_sender_packet(const tactus_sender* sender, size_t index, tactus_packet_info* info, uint8_t* bytes,
                                    size_t capacity, size_t* size, tactus_error* error) {
   return call(error, [&]() -> Outcome {

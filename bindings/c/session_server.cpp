@@ -9,6 +9,7 @@
 struct tactus_server {
   tactus::SessionServer server;
   tactus::c::TruthBuffer truth;
+  tactus::SharedScene scene;
   tactus::c::Clock clock{};
 };
 
@@ -115,7 +116,7 @@ tactus_status tactus_server_create(const tactus_scene* scene, const tactus_serve
     if (scene == nullptr || !scene->shared || server == nullptr || now > kLastTime) return refuse();
     TACTUS_TRY(const SessionServerOptions chosen, session_options(options));
     TACTUS_TRY(SessionServer made, SessionServer::create(scene->shared, chosen, entropy, now));
-    auto out = std::make_unique<tactus_server>(tactus_server{std::move(made), TruthBuffer(*scene->shared)});
+    auto out = std::make_unique<tactus_server>(tactus_server{std::move(made), TruthBuffer(*scene->shared), scene->shared});
     TACTUS_CHECK(out->clock.advance(now));
     *server = out.release();
     return TACTUS_OK;
@@ -154,6 +155,14 @@ tactus_status tactus_server_submit(tactus_server* server, uint64_t now, int64_t 
   });
 }
 
+tactus_status tactus_server_held(const tactus_server* server, tactus_held* out, size_t capacity, size_t* count,
+                                 tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (server == nullptr) return refuse();
+    return copy_held(*server->scene, server->server.held(), out, capacity, count);
+  });
+}
+
 tactus_status tactus_server_replace_scene(tactus_server* server, const tactus_scene* scene, uint64_t now, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     if (scene == nullptr || !scene->shared) return refuse();
@@ -161,6 +170,7 @@ tactus_status tactus_server_replace_scene(tactus_server* server, const tactus_sc
     TruthBuffer truth(*scene->shared);
     TACTUS_CHECK(to->replace_scene(scene->shared, now));
     server->truth = std::move(truth);
+    server->scene = scene->shared;
     return TACTUS_OK;
   });
 }

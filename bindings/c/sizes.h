@@ -44,7 +44,7 @@ TACTUS_SIZED(tactus_rigid_info, TACTUS_UP_TO(tactus_rigid_info, initial));
 TACTUS_SIZED(tactus_deformable_info, TACTUS_UP_TO(tactus_deformable_info, reserved));
 TACTUS_SIZED(tactus_receiver_options, TACTUS_UP_TO(tactus_receiver_options, limits));
 TACTUS_SIZED(tactus_scene_options, TACTUS_UP_TO(tactus_scene_options, friction),
-             TACTUS_UP_TO(tactus_scene_options, interest_reach));
+             TACTUS_UP_TO(tactus_scene_options, interest_reach), TACTUS_UP_TO(tactus_scene_options, limits));
 TACTUS_SIZED(tactus_deformable_options, TACTUS_UP_TO(tactus_deformable_options, blend));
 TACTUS_SIZED(tactus_driven_physics, TACTUS_UP_TO(tactus_driven_physics, damping));
 TACTUS_SIZED(tactus_elastic_physics, TACTUS_UP_TO(tactus_elastic_physics, friction),
@@ -60,7 +60,7 @@ TACTUS_SIZED(tactus_trace_info, TACTUS_UP_TO(tactus_trace_info, source));
 TACTUS_SIZED(tactus_trace_object, TACTUS_UP_TO(tactus_trace_object, name));
 TACTUS_SIZED(tactus_trace_user, TACTUS_UP_TO(tactus_trace_user, name), TACTUS_UP_TO(tactus_trace_user, reserved));
 TACTUS_SIZED(tactus_trace_mesh, TACTUS_UP_TO(tactus_trace_mesh, name));
-TACTUS_SIZED(tactus_trace_coding, TACTUS_UP_TO(tactus_trace_coding, deformable));
+TACTUS_SIZED(tactus_trace_coding, TACTUS_UP_TO(tactus_trace_coding, deformable), TACTUS_UP_TO(tactus_trace_coding, world_size));
 TACTUS_SIZED(tactus_errors_options, TACTUS_UP_TO(tactus_errors_options, deformable));
 TACTUS_SIZED(tactus_error_summary, TACTUS_UP_TO(tactus_error_summary, worst_ratio));
 TACTUS_SIZED(tactus_mesh_summary, TACTUS_UP_TO(tactus_mesh_summary, worst_ratio));

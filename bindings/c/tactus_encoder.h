@@ -32,6 +32,10 @@ typedef struct tactus_scene_options {
   /* m: a client is told of rigid objects in full up to interest_full from where it looks, with bounds twice as wide at twice the distance,
      and of none beyond interest_reach; 0: of all in full */
   double interest_full, interest_reach;
+  /* m: how far from the origin positions get, along any axis. The position grid becomes as fine as that permits, and none finer than
+     position_exp; _build refuses a world too large for the promised bounds. 0: as position_exp is: 2^(31 - position_exp) m, 512 m */
+  double world_size;
+  const tactus_limits* limits; /* of all its receivers: for more than 4096 objects, say. NULL: defaults */
 } tactus_scene_options;
 
 typedef struct tactus_deformable_options {
@@ -128,6 +132,8 @@ TACTUS_API tactus_status tactus_scene_builder_promise(tactus_scene_builder* buil
 TACTUS_API tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_scene** scene, tactus_error* error);
 /* Name of the object that the last error of _build concerns; "" none. Lives until the next call of the builder. */
 TACTUS_API const char* tactus_scene_builder_culprit(const tactus_scene_builder* builder);
+/* Figures of the case that the last error of _build is; "" none: the error's texts say all. Lives as long. */
+TACTUS_API const char* tactus_scene_builder_detail(const tactus_scene_builder* builder);
 
 /* ---------------------------------------------------------------- sender: truth in, packets out */
 
@@ -196,14 +202,35 @@ typedef struct tactus_truth {
   size_t moved_count;
 } tactus_truth;
 
+/* What of a truth breaks a rule. It does not stop the others: what it was before is coded, at rest, until it breaks none. */
+enum {
+  TACTUS_PART_OBJECT =
+      0, /* a rigid object: R-API-1 not finite, R-API-2 off the grid, R-API-3 no rotation, R-API-6 off its axes */
+  TACTUS_PART_CONTACT = 1, /* a contact that does not count: R-API-1, R-API-15; 16 at most are told */
+  TACTUS_PART_SHAPE = 2,   /* of a deformable object: R-API-1, 2 */
+  TACTUS_PART_TOUCH = 3,   /* of a deformable object, which does not count: R-API-1, R-API-15 */
+  TACTUS_PART_LOAD = 4     /* of a rigid object: R-API-1, 2 */
+};
+typedef struct tactus_held {
+  uint32_t part;    /* TACTUS_PART_... */
+  uint32_t index;   /* of the object, or of the contact */
+  int64_t since;    /* tick */
+  const char* rule; /* static; tactus_error_text and _remedy of an error with it are its texts */
+  const char* name; /* of the object, "" of a contact; UTF-8, lives as long as the scene */
+} tactus_held;
+
 TACTUS_API tactus_status tactus_sender_options_init(tactus_sender_options* options, size_t size);
 TACTUS_API tactus_status tactus_truth_init(tactus_truth* truth, size_t size); /* nothing */
 TACTUS_API tactus_status tactus_sender_create(const tactus_scene* scene, const tactus_sender_options* options,
                                               tactus_sender** sender, tactus_error* error);
 TACTUS_API void tactus_sender_destroy(tactus_sender* sender);
-/* Evaluate a tick and code the packets it needs.   in  tick  rising   out  packets  how many, mostly 0   err  R-API-1 to 7 */
+/* Evaluate a tick and code the packets it needs.   in  tick  rising   out  packets  how many, mostly 0
+   err  R-API-5 a wrong count or tick. One bad object is no error: tactus_sender_held */
 TACTUS_API tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const tactus_truth* truth, size_t* packets,
                                               tactus_error* error);
+/* Parts of the last tick's truth that are held, mostly none.   out  count  needed or written   time 10 ns */
+TACTUS_API tactus_status tactus_sender_held(const tactus_sender* sender, tactus_held* out, size_t capacity, size_t* count,
+                                            tactus_error* error);
 /* Packet `index` of the last tick.   in  info  may be NULL   out  size  needed or written */
 TACTUS_API tactus_status tactus_sender_packet(const tactus_sender* sender, size_t index, tactus_packet_info* info, uint8_t* bytes,
                                               size_t capacity, size_t* size, tactus_error* error);

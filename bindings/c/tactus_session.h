@@ -112,6 +112,9 @@ TACTUS_API tactus_status tactus_server_handle_timeout(tactus_server* server, uin
 /* Code a tick for every live client.   err  as tactus_sender_encode; all clients that can are served */
 TACTUS_API tactus_status tactus_server_submit(tactus_server* server, uint64_t now, int64_t tick, const tactus_truth* truth,
                                               tactus_error* error);
+/* As tactus_sender_held, of the last _submit that found a live client.   out  count  needed or written */
+TACTUS_API tactus_status tactus_server_held(const tactus_server* server, tactus_held* out, size_t capacity, size_t* count,
+                                            tactus_error* error);
 /* Another scene; ticks begin anew. */
 TACTUS_API tactus_status tactus_server_replace_scene(tactus_server* server, const tactus_scene* scene, uint64_t now,
                                                      tactus_error* error);

@@ -76,6 +76,7 @@ typedef struct tactus_trace_coding {
   uint32_t clusters;           /* of each mesh at most, found on the trace, which is read once more: not from a pipe; 0: none */
   const tactus_rigid_bounds* rigid; /* that the scene declares; NULL: defaults */
   const tactus_deformable_bounds* deformable;
+  double world_size; /* m; 0; as tactus_scene_options */
 } tactus_trace_coding;
 
 /* What the last call of this thread that opened, read or wrote a recording said when it failed, beyond its rule: file, topic or row, time,

@@ -21,7 +21,8 @@ constexpr tactus_trace_coding kCoding{.size = sizeof(tactus_trace_coding),
                                       .spring_modes = 0,
                                       .clusters = 0,
                                       .rigid = nullptr,
-                                      .deformable = nullptr};
+                                      .deformable = nullptr,
+                                      .world_size = 0};
 
 Result<const TraceDeformable*> mesh_of(const tactus_trace* trace, std::uint32_t mesh) noexcept {
   TACTUS_TRY(const TraceInfo* info, info_of(trace));
@@ -118,6 +119,7 @@ Result<std::vector<std::uint8_t>> declaration(const tactus_trace& trace, const t
                             .clusters = std::move(clusters),
                             .rigid = static_cast<RigidProfile>(coding.rigid_profile)}));
   builder.baselines(static_cast<std::uint8_t>(coding.baselines)).promise(rigid, deformable);
+  if (coding.world_size != 0) builder.world_size(coding.world_size);
   TACTUS_TRY(const SharedScene scene, std::move(builder).build());
   return write_scene(*scene);
 }

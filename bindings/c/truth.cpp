@@ -8,6 +8,16 @@ static_assert(TACTUS_CONTACT_NONE == static_cast<int>(ContactKind::none) &&
               TACTUS_CONTACT_SURFACE == static_cast<int>(ContactKind::surface) &&
               TACTUS_CONTACT_SPRING == static_cast<int>(ContactKind::spring));
 
+static_assert(TACTUS_PART_OBJECT == static_cast<int>(TruthPart::object) &&
+              TACTUS_PART_CONTACT == static_cast<int>(TruthPart::contact) &&
+              TACTUS_PART_SHAPE == static_cast<int>(TruthPart::shape) &&
+              TACTUS_PART_TOUCH == static_cast<int>(TruthPart::touch) && TACTUS_PART_LOAD == static_cast<int>(TruthPart::load));
+
+/// One that there is none of breaks R-API-15.
+ContactKind kind_of(std::int32_t kind) noexcept {
+  return static_cast<ContactKind>(kind >= TACTUS_CONTACT_NONE && kind <= TACTUS_CONTACT_SPRING ? kind : 0xff);
+}
+
 }  // namespace
 
 TruthBuffer::TruthBuffer(const Scene& scene)
@@ -35,7 +45,7 @@ Result<Truth> TruthBuffer::of(const tactus_truth* truth) {
     objects_[i] = {pose_of(s.pose), vec_of(s.velocity), vec_of(s.angular_velocity)};
   }
   contacts_.clear();
-  for (const tactus_contact& contact : contacts) TACTUS_CHECK(take(contact));
+  for (const tactus_contact& contact : contacts) take(contact);
   for (std::size_t i = 0; i < shapes.size(); ++i) TACTUS_CHECK(take(shapes[i], shapes_[i]));
   if (t.load_count > 0) take_loads(t.loads);
   Truth out{.objects = std::span(objects_).first(objects.size()),
@@ -46,15 +56,13 @@ Result<Truth> TruthBuffer::of(const tactus_truth* truth) {
   return out;
 }
 
-Result<void> TruthBuffer::take(const tactus_contact& contact) {
-  if (contact.kind < TACTUS_CONTACT_NONE || contact.kind > TACTUS_CONTACT_SPRING) return fail(Errc::invalid_argument, "R-API-5");
-  contacts_.push_back({.kind = static_cast<ContactKind>(contact.kind),
+void TruthBuffer::take(const tactus_contact& contact) {
+  contacts_.push_back({.kind = kind_of(contact.kind),
                        .object = contact.object,
                        .point = vec_of(contact.point),
                        .normal = vec_of(contact.normal),
                        .device = vec_of(contact.device),
                        .stiffness = contact.stiffness});
-  return {};
 }
 
 Result<void> TruthBuffer::take(const tactus_shape& shape, DeformableTruth& out) noexcept {
@@ -77,6 +85,22 @@ void TruthBuffer::take_loads(const double* vectors) noexcept {
     loads_[i].hold = next();
     for (std::size_t user = 0; user < users_; ++user) pushes_[i * users_ + user] = next();
   }
+}
+
+Outcome copy_held(const Scene& scene, std::span<const HeldPart> held, tactus_held* out, std::size_t capacity,
+                  std::size_t* count) noexcept {
+  if (count == nullptr || (out == nullptr && capacity > 0)) return refuse();
+  *count = held.size();
+  if (held.size() > capacity) return TACTUS_BUFFER_TOO_SMALL;
+  for (const HeldPart& part : held) {
+    const char* const name = name_of(scene, part).data();
+    *out++ = {.part = static_cast<std::uint32_t>(part.part),
+              .index = part.index,
+              .since = part.since,
+              .rule = part.rule,
+              .name = name != nullptr ? name : ""};
+  }
+  return TACTUS_OK;
 }
 
 }  // namespace tactus::c

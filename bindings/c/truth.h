@@ -16,11 +16,11 @@ class TruthBuffer {
   explicit TruthBuffer(const Scene& scene);
 
   /// out  valid until the next call, and as long as the caller's shapes
-  /// err  R-API-12 a null pointer; R-API-5 a wrong count, or no kind of contact
+  /// err  R-API-12 a null pointer; R-API-5 a wrong count
   Result<Truth> of(const tactus_truth* truth);
 
  private:
-  Result<void> take(const tactus_contact& contact);
+  void take(const tactus_contact& contact);
   static Result<void> take(const tactus_shape& shape, DeformableTruth& out) noexcept;
   void take_loads(const double* vectors) noexcept;
 
@@ -31,6 +31,10 @@ class TruthBuffer {
   std::vector<ObjectLoad> loads_;
   std::vector<Vec3> pushes_;  // of all loads
 };
+
+/// Parts that are held, for the caller.   err  as copy_out()
+Outcome copy_held(const Scene& scene, std::span<const HeldPart> held, tactus_held* out, std::size_t capacity,
+                  std::size_t* count) noexcept;
 
 /// err  as given_or(); R-API-4 there is no such reduction or baseline
 Result<SenderOptions> options_of(const tactus_sender_options* options) noexcept;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <tactus/base/shown.h>
@@ -16,6 +17,7 @@
 #include "cli/figure/time_figure.h"
 #include "cli/options/contact_option.h"
 #include "cli/options/option_needs.h"
+#include "cli/report/held_log.h"
 #include "cli/report/report.h"
 
 namespace tactus::cli {
@@ -28,6 +30,7 @@ struct EncodeOptions {
   MotionArguments motion;
   ContactArguments contacts;
   unsigned clusters = 0;
+  double world_size = 0;  // [m], 0: not given
   CommonOptions common;
 };
 
@@ -39,6 +42,7 @@ struct Session {
   FrameTruth truth;
   std::vector<Pose> shown;
   std::optional<ErrorFigure> figure{};
+  HeldLog held{};
 };
 
 constexpr const char* kReasons[] = {"key or unconditional", "heartbeat", "visual bound", "haptic bound"};  // index: Reason
@@ -59,17 +63,40 @@ bool has_moving(const TraceInfo& info) {
   return std::ranges::any_of(info.objects, [](const TraceObject& o) { return o.dof != Dof::none; });
 }
 
-Result<Session> start(const TraceInfo& info, const TraceFrame& first, const EncodeOptions& options, Clusters clusters,
-                      std::ostream& out) {
+/// The file that an error message names: the output for write errors, else the trace.
+const std::string& to_blame(const Error& error, const EncodeOptions& options) {
+  return error.code == Errc::io ? options.output : options.input;
+}
+
+/// Why a scene could not be made, with its figures.
+tl::unexpected<Failure> refuse_scene(const SceneFinding& finding, const EncodeOptions& options) {
+  auto refused = refuse(options.input, shown(finding.object), finding.error);
+  if (!finding.detail.empty()) refused.value().text += ": " + finding.detail;
+  if (finding.error.rule == std::string_view("R-API-2"))
+    refused.value().remedy = "Give the size of the world with --world-size, or check the unit (import takes --length-unit).";
+  if (!finding.detail.empty() && finding.error.rule == std::string_view("R-API-4"))
+    refused.value().remedy = "Give a smaller --world-size, or wider bounds.";
+  return refused;
+}
+
+tl::expected<Session, Failure> start(const TraceInfo& info, const TraceFrame& first, const EncodeOptions& options,
+                                     Clusters clusters, std::ostream& out) {
+  const auto blame = [&](const Error& error) { return refuse(to_blame(error, options), error); };
   TraceCoding coding = options.meshes.coding(options.triggers);
   coding.clusters = std::move(clusters);
   const SenderOptions wanted = options.meshes.sender(options.triggers);
-  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, coding, wanted));
-  TACTUS_TRY(const SharedScene scene, builder.motion(options.motion.physics()).build());
-  TACTUS_TRY(StreamFileWriter writer, StreamFileWriter::create(out, *scene));
-  TACTUS_TRY(Sender sender, Sender::create(scene, wanted));
-  TACTUS_TRY(Receiver receiver, Receiver::create(scene));
-  return Session{std::move(writer), std::move(sender), std::move(receiver), FrameTruth(info),
+  auto builder = scene_builder(info, first, coding, wanted);
+  if (!builder) return blame(builder.error());
+  if (options.world_size > 0) builder->world_size(options.world_size);
+  const auto scene = builder->motion(options.motion.physics()).build();
+  if (!scene) return refuse_scene(scene.error(), options);
+  auto writer = StreamFileWriter::create(out, **scene);
+  if (!writer) return blame(writer.error());
+  auto sender = Sender::create(*scene, wanted);
+  if (!sender) return blame(sender.error());
+  auto receiver = Receiver::create(*scene);
+  if (!receiver) return blame(receiver.error());
+  return Session{*std::move(writer), *std::move(sender), *std::move(receiver), FrameTruth(info),
                  std::vector<Pose>(info.objects.size())};
 }
 
@@ -121,16 +148,12 @@ Result<void> encode_frame(Session& s, const TraceFrame& frame, Report& report) {
   if (StepTimes* times = times_of(frame, report)) {
     const Truth truth = s.truth.of(frame);
     TACTUS_TRY(const auto packets, times->measure([&] { return s.sender.encode(frame.tick, truth); }));
+    s.held.look(frame.tick, s.sender.held());
     for (const Packet& packet : packets) TACTUS_CHECK(send(s, packet, frame.tick, report));
   }
   judge(s, frame, report);
   report.ticks.add(frame.tick);
   return {};
-}
-
-/// The file that an error message names: the output for write errors, else the trace.
-const std::string& to_blame(const Error& error, const EncodeOptions& options) {
-  return error.code == Errc::io ? options.output : options.input;
 }
 
 Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, const ContactDeclarations& contacts,
@@ -172,7 +195,7 @@ Outcome run(const EncodeOptions& options) {
   TACTUS_TRY(const auto stream, output.open());
 
   auto session = start(reader->info(), frame, options, std::move(clusters), *stream);
-  if (!session) return refuse(to_blame(session.error(), options), session.error());
+  if (!session) return tl::unexpected(session.error());
   if (!options.plot.empty()) session->figure.emplace(reader->info());
   Report report{.command = "encode", .files = {{"trace", options.input}, {"stream", options.output}}};
   report.describe(reader->info());
@@ -188,6 +211,7 @@ Outcome run(const EncodeOptions& options) {
   report.add(reader->notes());
   if (reader->cut_short())
     report.warnings.emplace_back("the trace ends without its index; everything before the cut was encoded");
+  for (const std::string& line : session->held.lines(*session->sender.scene())) report.warnings.push_back(line);
   TACTUS_CHECK(output.keep());
   report.stream = {session->writer.header_bytes(), session->writer.bytes()};
   report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";
@@ -216,6 +240,8 @@ void setup_encode(Command& app, Action& action) {
       ->check(whole_number(0, ClusterBasis::kMaxClusters))
       ->type_name("N")
       ->excludes(command.find("--basis"));
+  add_quantity(command, "--world-size", options->world_size, Dimension::length,
+               "How far from the origin positions get, along any axis: the position grid is as fine as that permits [512m]");
   options->motion.add_to(command);
   options->contacts.add_to(command);
   add_plot_option(command, options->plot, "packets by their reasons and errors beside their bounds, over time");

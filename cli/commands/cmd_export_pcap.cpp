@@ -11,7 +11,9 @@
 #include "cli/options/option_needs.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/options_link.h"
+#include "cli/report/held_log.h"
 #include "cli/report/json.h"
+#include "cli/report/messages.h"
 
 namespace tactus::cli {
 namespace {
@@ -37,6 +39,7 @@ struct Playback {
   FrameTruth truth;
   std::vector<DeviceSample> devices{};  // of the clients that have one
   std::vector<std::optional<DeviceContact>> contacts{};
+  HeldLog held{};
 };
 
 bool are_participants(const ExportPcapOptions& options, const TraceInfo& info) { return !options.observe && !info.users.empty(); }
@@ -71,7 +74,9 @@ Result<void> play_frame(Playback& play, std::int64_t tick) {
     play.contacts[i] = contact_of(frame.users[i], frame);
   }
   TACTUS_CHECK(play.network->to_server(tick, play.devices, play.contacts));
-  return play.network->to_clients(tick, play.truth.of(frame));
+  TACTUS_CHECK(play.network->to_clients(tick, play.truth.of(frame)));
+  play.held.look(tick, play.network->held());
+  return {};
 }
 
 /// Ticks count from the first of the trace, and pauses of the recording take their time.
@@ -86,6 +91,9 @@ Outcome play_all(Playback& play, const ExportPcapOptions& options, TickSpan& tic
     TACTUS_TRY(const bool more, next_frame(play.reader, play.frame, options.input));
     if (!more) break;
   }
+  if (const Receiver* const receiver = play.network->view(0).receiver)
+    for (const std::string& line : play.held.lines(*receiver->scene()))
+      fmt::print(stderr, "warning: {}: {}\n", shown_path(options.input), printable(line));
   play.network->leave();
   return {};
 }

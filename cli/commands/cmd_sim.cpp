@@ -313,6 +313,7 @@ Outcome run(const SimOptions& options) {
                  {},
                  {},
                  {},
+                 {},
                  {}};
   if (!options.plot.empty()) session.figure.emplace(info);
   if (networked.network != nullptr) {
@@ -326,6 +327,8 @@ Outcome run(const SimOptions& options) {
     if (report.ticks.count() == 0) session.output.discard();
     return done;
   }
+  if (const SharedScene declared = session.simulation.stream_scene())
+    for (const std::string& line : session.held.lines(*declared)) report.warnings.push_back(line);
   report_touches(scene, session.simulation, options.has_network(), report);
   report_rigid(scene, session.simulation.rigid_errors(), report);
   if (session.judge) report.networks = session.judge->finish(*session.network);

@@ -74,6 +74,7 @@ Outcome record(SimRun& run, std::span<const Packet> packets, const SimOptions& o
   if (const auto written = run.trace.write(frame); !written)
     return refuse(options.output, place_of_tick(frame.tick), written.error());
   TACTUS_CHECK(record_packets(run, packets, options, report));
+  run.held.look(frame.tick, run.simulation.held());
   if (run.figure) run.figure->add(frame);
   if (run.judge) {
     run.judge->add(run.simulation, *run.network);

@@ -14,6 +14,7 @@
 #include "cli/commands/sim_check.h"
 #include "cli/figure/time_figure.h"
 #include "cli/options/options_link.h"
+#include "cli/report/held_log.h"
 #include "cli/report/report.h"
 #include "cli/report/sim_report.h"
 
@@ -68,6 +69,7 @@ struct SimRun {
   std::optional<MotionFigure> figure;
   std::vector<SimCheck> checks;  // finer runs beside it
   CheckedTick checked;           // for them
+  HeldLog held{};
 };
 
 /// Of what was sent, or would have been.

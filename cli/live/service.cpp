@@ -143,6 +143,7 @@ Outcome Service::make_tick(std::uint64_t now, std::optional<TraceWriter>& trace,
   if (frame.changed) truth.moved = *frame.changed;
   if (const auto sent = sessions_.submit(now, frame.tick, truth); !sent)
     return refuse("session", place_of_tick(frame.tick), sent.error());
+  tell_held(frame.tick, now);
   say(now);
   if (observation_ != nullptr) observation_->offer(frame, truth.loads);
   if (trace)
@@ -292,6 +293,18 @@ void Service::tell_refusal(LeaveReason reason, std::uint64_t now) {
                               : "the scene is beyond its limits (its --limit: memory or declaration)";
   log_.tell(now, "refused", fmt::format("a client is refused: {}; {} so far", why, counted(times, "join")),
             {{"reason", cli::name_of(reason)}, {"joins", times}});
+}
+
+void Service::tell_held(std::int64_t tick, std::uint64_t now) {
+  held_.look(tick, sessions_.held());
+  const Scene& scene = *world_.stream_scene();
+  const auto fields = [&](const HeldPart& part) {
+    return Json{{"object", std::string(tactus::name_of(scene, part))}, {"since_tick", part.since}, {"rule", part.rule}};
+  };
+  for (const HeldPart& part : held_.begun())
+    log_.tell(now, "held", fmt::format("{}: it is held, the others go on", text_of(scene, part)), fields(part));
+  for (const HeldPart& part : held_.ended())
+    log_.tell(now, "goes-on", fmt::format("{} goes on after tick {}", tactus::name_of(scene, part), part.since), fields(part));
 }
 
 void Service::describe(ServerFigures& out) {

@@ -16,6 +16,7 @@
 #include "cli/live/monitor.h"
 #include "cli/live/wire.h"
 #include "cli/observe/observation.h"
+#include "cli/report/held_log.h"
 #include "cli/report/messages.h"
 
 namespace tactus::cli {
@@ -72,6 +73,7 @@ class Service {
   std::uint64_t silence_of(std::uint16_t client, std::uint64_t now) const;
   void tell(const ServerEvent& event, std::uint64_t now);
   void tell_refusal(LeaveReason reason, std::uint64_t now);
+  void tell_held(std::int64_t tick, std::uint64_t now);
   void tell_widening(const ClientStatus& status, std::uint64_t now);
   void tell(std::uint16_t client, std::uint64_t now, const char* event, const std::string& text, Json fields = Json::object());
   void look_at_keys(std::uint64_t now);
@@ -99,6 +101,7 @@ class Service {
   std::uint64_t joined_ = 0, left_ = 0, moved_ = 0;
   std::array<std::uint64_t, 7> refusals_{};  // by LeaveReason
   std::uint64_t refusal_told_at_ = 0;        // [us]
+  HeldLog held_;
 };
 
 }  // namespace tactus::cli

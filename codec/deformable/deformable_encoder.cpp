@@ -260,19 +260,11 @@ class Of final : public DeformableEncoder {
   Of(const Scene& scene, std::size_t index, const DeformableOptions& options, const SenderPolicy& policy, std::size_t largest,
      bool layered, typename Codec::State initial)
       : object_(scene.deformables[index]),
-        position_exp_(scene.grid.position),
         layered_(layered),
-        truth_(object_.rest.size()),
         stream_(scene, layered ? chained(policy) : policy, index + 1, largest, layered ? 2 : 1, initial, scene, object_,
                 options) {}
 
-  Result<void> read(const DeformableTruth& truth) noexcept override {
-    if (truth.touch) TACTUS_CHECK(check_touch(*truth.touch));
-    TACTUS_CHECK(to_grid(truth.displacements, position_exp_, truth_));
-    touch_ = truth.touch;
-    stream_.codec().read(truth_, touch_ ? &*touch_ : nullptr);
-    return {};
-  }
+  void read(const ShapeTruth& truth) noexcept override { stream_.codec().read(truth.shape(), truth.touch()); }
   Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept override {
     return stream_.encode(tick, layer, number).value_or(Packet{});
   }
@@ -294,22 +286,46 @@ class Of final : public DeformableEncoder {
     policy.baseline = Baseline::previous;
     return policy;
   }
-  Result<void> check_touch(const SurfaceTouch& touch) const noexcept {
-    if (!std::isfinite(touch.force) || !std::isfinite(touch.stiffness)) return fail(Errc::invalid_argument, "R-API-1");
-    if (touch.triangle >= object_.triangles.size() || touch.force < 0 || !(touch.stiffness > 0))
-      return fail(Errc::invalid_argument, "R-API-5");
-    return {};
-  }
 
   const DeformableObject& object_;
-  std::uint8_t position_exp_;
   bool layered_;
-  std::vector<Vec3i> truth_;  // this frame, on the grid
-  std::optional<SurfaceTouch> touch_;
   SubstreamEncoder<Codec> stream_;
 };
 
+/// The rule that a touch breaks, or none.
+RuleName broken_rule(const SurfaceTouch& touch, std::size_t triangles) noexcept {
+  if (!std::isfinite(touch.force) || !std::isfinite(touch.stiffness)) return "R-API-1";
+  if (touch.triangle >= triangles || touch.force < 0 || !(touch.stiffness > 0)) return "R-API-15";
+  return {};
+}
+
 }  // namespace
+
+ShapeTruth::ShapeTruth(const Scene& scene, std::uint32_t object, HeldList& held)
+    : held_(held),
+      object_(object),
+      triangles_(scene.deformables[object].triangles.size()),
+      position_exp_(scene.grid.position),
+      shape_(scene.deformables[object].rest.size()),
+      next_(shape_.size()) {}
+
+void ShapeTruth::read(std::int64_t tick, const DeformableTruth* truth) noexcept {
+  is_new_ = truth != nullptr && !truth->displacements.empty();
+  if (!is_new_) {
+    held_.keep(TruthPart::shape, object_);
+    held_.keep(TruthPart::touch, object_);
+    return;
+  }
+  const auto hold = [&](TruthPart part, const char* rule) { held_.hold({part, object_, tick, rule}); };
+  if (const auto on_grid = to_grid(truth->displacements, position_exp_, next_)) std::swap(shape_, next_);
+  else hold(TruthPart::shape, on_grid.error().rule);
+  touch_ = truth->touch;
+  if (!touch_) return;
+  if (const RuleName rule = broken_rule(*touch_, triangles_)) {
+    touch_.reset();
+    hold(TruthPart::touch, rule);
+  }
+}
 
 std::size_t max_packet(const DeformableObject& object) noexcept {
   if (object.profile == DeformableProfile::thesis) return max_thesis_packet(object.rest.size(), object.quant_bits);

@@ -15,6 +15,7 @@
 #include <tactus/deformable/main_state.h>
 #include <tactus/deformable/main_syntax.h>
 #include <tactus/deformable/vertex_coder.h>
+#include <tactus/packet/held_list.h>
 #include <tactus/packet/packet.h>
 #include <tactus/packet/sender_policy.h>
 #include <tactus/packet/substream_encoder.h>
@@ -99,6 +100,32 @@ class MainEncoder {
 
 class FollowedShape;
 
+/// The truth of one deformable object on the grid, for all who code it.
+class ShapeTruth {
+ public:
+  /// pre  `scene` and `held` outlive this.   allocates
+  ShapeTruth(const Scene& scene, std::uint32_t object, HeldList& held);
+
+  /// Take the truth of a tick. A shape that breaks a rule is the last one that broke none, and such a touch does not count: both are noted.
+  /// in   truth  null: there is no news.   pre  as many displacements as the object has, or none
+  /// time 1 ns per component, no allocation
+  void read(std::int64_t tick, const DeformableTruth* truth) noexcept;
+
+  bool is_new() const noexcept { return is_new_; }  ///< the last read() had a shape
+  std::span<const Vec3i> shape() const noexcept { return shape_; }
+  const SurfaceTouch* touch() const noexcept { return touch_ ? &*touch_ : nullptr; }
+  std::size_t components() const noexcept { return 3 * shape_.size(); }
+
+ private:
+  HeldList& held_;
+  std::uint32_t object_;
+  std::size_t triangles_;
+  std::uint8_t position_exp_;
+  bool is_new_ = false;
+  std::vector<Vec3i> shape_, next_;
+  std::optional<SurfaceTouch> touch_;
+};
+
 /// Largest packet of an object, without the number of its substream [bytes].
 std::size_t max_packet(const DeformableObject& object) noexcept;
 
@@ -111,8 +138,8 @@ class DeformableEncoder {
                                                    const SenderPolicy& policy);
   virtual ~DeformableEncoder() = default;
 
-  /// Take the truth of one frame; changes nothing else.   pre  there are displacements.   in, err  Sender::encode
-  virtual Result<void> read(const DeformableTruth& truth) noexcept = 0;
+  /// Take the truth of one frame; changes nothing else.   pre  it is new, and lives until the last encode() of the frame
+  virtual void read(const ShapeTruth& truth) noexcept = 0;
   /// Code one packet of the frame. A layered object takes its haptic layer first, then the visual one; others take Layer::all.
   /// Returns a packet without bytes if none is needed.
   /// in   number  as in SubstreamEncoder::encode

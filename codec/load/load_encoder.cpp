@@ -39,12 +39,39 @@ Result<void> LoadEncoder::check(const LoadThresholds& thresholds) noexcept {
   return {};
 }
 
-LoadEncoder::LoadEncoder(const Scene& scene, const LoadThresholds& thresholds, Baseline baseline)
+LoadTruth::LoadTruth(const Scene& scene, HeldList& held)
+    : scene_(scene), held_(held), vectors_(initial_loads(scene).vectors), next_(vectors_of_load(scene)) {}
+
+bool LoadTruth::fits(std::span<const ObjectLoad> loads) const noexcept {
+  return loads.size() == scene_.objects.size() && std::ranges::all_of(scene_.moving(), [&](std::uint32_t object) {
+           return loads[object].pushes.size() == scene_.loads->users;
+         });
+}
+
+void LoadTruth::read(std::int64_t tick, std::span<const ObjectLoad> loads) noexcept {
+  auto at = vectors_.begin();
+  for (const std::uint32_t object : scene_.moving()) {
+    const ObjectLoad& load = loads[object];
+    const char* broken = nullptr;
+    const auto take = [&](std::size_t i, const Vec3& force) {
+      if (const auto on_grid = to_grid_force(force, scene_.loads->force_exp)) next_[i] = *on_grid;
+      else broken = on_grid.error().rule;
+    };
+    take(kExternal, load.external);
+    take(kHold, load.hold);
+    for (std::size_t user = 0; user < load.pushes.size(); ++user) take(kPushes + user, load.pushes[user]);
+    if (broken == nullptr) std::ranges::copy(next_, at);
+    else held_.hold({TruthPart::load, object, tick, broken});
+    at += static_cast<std::ptrdiff_t>(next_.size());
+  }
+}
+
+LoadEncoder::LoadEncoder(const Scene& scene, const LoadThresholds& thresholds, Baseline baseline, const LoadTruth& truth)
     : scene_(scene),
       thresholds_(thresholds),
       is_acknowledged_(baseline == Baseline::acknowledged),
       floor_(std::ldexp(thresholds.force_floor, scene.loads->force_exp)),
-      truth_(initial_loads(scene).vectors),
+      truth_(truth.vectors()),
       wanted_(truth_),
       steps_(vectors_of_load(scene)) {
   pending_.reserve(scene.moving().size());
@@ -54,22 +81,6 @@ void LoadEncoder::set_link(const LinkState& link) noexcept {
   if (!is_acknowledged_) return;
   const auto soon = static_cast<std::int64_t>(std::ceil(kSoon * scene_.tick_rate));
   answer_ = link.answer > 0 && link.loss >= kSomeLoss ? std::min(link.answer, soon) : link.answer;
-}
-
-Result<void> LoadEncoder::read(std::int64_t tick, std::span<const ObjectLoad> loads) noexcept {
-  if (loads.size() != scene_.objects.size()) return fail(Errc::invalid_argument, "R-API-5");
-  std::size_t at = 0;
-  for (const std::uint32_t object : scene_.moving()) {
-    const ObjectLoad& load = loads[object];
-    if (load.pushes.size() != scene_.loads->users) return fail(Errc::invalid_argument, "R-API-5");
-    TACTUS_TRY(truth_[at++], to_grid_force(load.external, scene_.loads->force_exp));
-    TACTUS_TRY(truth_[at++], to_grid_force(load.hold, scene_.loads->force_exp));
-    for (const Vec3& push : load.pushes) {
-      TACTUS_TRY(truth_[at++], to_grid_force(push, scene_.loads->force_exp));
-    }
-  }
-  tick_ = tick;
-  return {};
 }
 
 /// At `share` of the permitted error, for the unrounded truth.
@@ -91,7 +102,7 @@ bool LoadEncoder::is_out(std::size_t object, const LoadState& state, double shar
 void LoadEncoder::collect(const EncodeRequest<LoadState>& request) noexcept {
   pending_.clear();
   const std::size_t objects = scene_.moving().size();
-  bool fires = request.requested || (!acknowledged_ && answer_ > 0 && tick_ - sent_ >= answer_);
+  bool fires = request.requested || (!acknowledged_ && answer_ > 0 && request.tick - sent_ >= answer_);
   for (std::size_t i = 0; i < objects && !fires; ++i) fires = is_out(i, request.shown, 1);
   if (!fires) return;
   for (std::size_t i = 0; i < objects; ++i)

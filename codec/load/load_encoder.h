@@ -12,11 +12,31 @@
 #include <vector>
 
 #include <tactus/load/load_syntax.h>
+#include <tactus/packet/held_list.h>
 #include <tactus/packet/sender_policy.h>
 #include <tactus/packet/substream_encoder.h>
 #include <tactus/scene/scene_objects.h>
 
 namespace tactus {
+
+/// The loads of a tick on the grid, for all who code them.
+class LoadTruth {
+ public:
+  /// pre  the scene has loads; it and `held` outlive this.   allocates
+  LoadTruth(const Scene& scene, HeldList& held);
+
+  /// Take the loads of one tick. Those of an object that break a rule are those that it had last: they are noted.
+  /// pre  fits().   time about 5 ns per vector, no allocation
+  void read(std::int64_t tick, std::span<const ObjectLoad> loads) noexcept;
+  /// One per rigid object, and of those that can move one push per user.
+  bool fits(std::span<const ObjectLoad> loads) const noexcept;
+  const std::vector<Vec3i>& vectors() const noexcept { return vectors_; }  ///< as in LoadState
+
+ private:
+  const Scene& scene_;
+  HeldList& held_;
+  std::vector<Vec3i> vectors_, next_;  // next_: of one object
+};
 
 /// A codec of SubstreamEncoder.
 class LoadEncoder {
@@ -25,13 +45,10 @@ class LoadEncoder {
 
   /// R-API-4: a threshold is not positive or not finite.
   static Result<void> check(const LoadThresholds& thresholds) noexcept;
-  /// pre  check(), the scene has loads and outlives the encoder
-  LoadEncoder(const Scene& scene, const LoadThresholds& thresholds, Baseline baseline);
+  /// pre  check(), the scene has loads; it and `truth` outlive the encoder
+  LoadEncoder(const Scene& scene, const LoadThresholds& thresholds, Baseline baseline, const LoadTruth& truth);
 
-  /// Take the loads of one tick; changes nothing else.   in  loads  one per rigid object; those of static ones are ignored
-  /// err  invalid_argument R-API-1, 2 a force is not finite or out of range; R-API-5 wrong count of objects or users
-  Result<void> read(std::int64_t tick, std::span<const ObjectLoad> loads) noexcept;
-  /// pre  read() took the request's tick.   time O(vectors), about 5 ns for one; no allocation
+  /// pre  the truth is that of the request's tick.   time O(vectors), about 5 ns for one; no allocation
   Result<Payload> encode(const EncodeRequest<LoadState>& request, std::span<std::uint8_t> out) noexcept;
   void commit(const LoadState& base, LoadState& next) noexcept;
   void acknowledge(std::uint64_t number) noexcept { acknowledged_ = acknowledged_ || number == number_; }
@@ -49,13 +66,14 @@ class LoadEncoder {
   bool is_acknowledged_;  // Baseline::acknowledged
   double floor_ = 0;      // in grid steps
   double widening_ = 1;
-  std::vector<Vec3i> truth_, wanted_;  // of this tick; as decoders will hold it
-  std::vector<std::size_t> pending_;   // objects, by their place in Scene::moving()
-  std::vector<LoadStep> steps_;        // of one object
-  std::int64_t tick_ = 0, sent_ = 0;   // now, and of the newest packet
-  std::int64_t answer_ = 0;            // [ticks] after which a packet that is not acknowledged is made anew; 0: never
-  std::uint64_t number_ = 0;           // of the newest packet
-  bool acknowledged_ = true;           // it is
+  const std::vector<Vec3i>& truth_;   // of this tick
+  std::vector<Vec3i> wanted_;         // as decoders will hold it
+  std::vector<std::size_t> pending_;  // objects, by their place in Scene::moving()
+  std::vector<LoadStep> steps_;       // of one object
+  std::int64_t sent_ = 0;             // tick of the newest packet
+  std::int64_t answer_ = 0;           // [ticks] after which a packet that is not acknowledged is made anew; 0: never
+  std::uint64_t number_ = 0;          // of the newest packet
+  bool acknowledged_ = true;          // it is
 };
 
 }  // namespace tactus

@@ -14,6 +14,20 @@
 
 namespace tactus {
 
+// ==== contacts ====
+
+RuleName broken_rule(const Contact& c, const Scene& scene) noexcept {
+  if (c.kind == ContactKind::none) return {};
+  if (!is_finite(c.point) || !is_finite(c.normal) || !is_finite(c.device) || !is_finite(c.stiffness)) return "R-API-1";
+  const bool is_unit = c.kind == ContactKind::spring || std::abs(norm(c.normal) - 1) <= 1e-6;
+  if (c.kind > ContactKind::spring || c.object >= scene.objects.size() || !is_unit || !(c.stiffness > 0)) return "R-API-15";
+  return {};
+}
+
+bool Contacts::Filter::counts(const Contact& contact) const noexcept {
+  return !broken_rule(contact, *scene) && (contact.kind == ContactKind::none || !held->has(TruthPart::object, contact.object));
+}
+
 // ==== acceleration ====
 
 namespace {
@@ -72,7 +86,7 @@ ForceTrend::ForceTrend(const Scene& scene) : scene_(scene) {
   for (auto& touched : touched_) touched.reserve(scene.objects.size());
 }
 
-void ForceTrend::read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts) noexcept {
+void ForceTrend::read(std::int64_t tick, std::span<const RigidSample> samples, const Contacts& contacts) noexcept {
   std::rotate(ticks_.begin(), ticks_.end() - 1, ticks_.end());
   std::rotate(forces_.begin(), forces_.end() - 1, forces_.end());
   std::rotate(touched_.begin(), touched_.end() - 1, touched_.end());
@@ -97,7 +111,7 @@ double ForceTrend::sinking(std::uint32_t object) const noexcept {
 
 // ==== error share ====
 
-ErrorShare::ErrorShare(std::uint32_t object, const Pose& truth, std::span<const Contact> contacts, const RigidTriggers& triggers,
+ErrorShare::ErrorShare(std::uint32_t object, const Pose& truth, const Contacts& contacts, const RigidTriggers& triggers,
                        double sinking) noexcept
     : per_metre_(1 / triggers.visual_position), per_radian_(1 / triggers.visual_rotation), sinking_(sinking) {
   if (triggers.haptic == HapticRule::off) return;
@@ -211,8 +225,7 @@ DrivenChoice::DrivenChoice(const Scene& scene, const DevicePath& path)
 }
 
 /// The contact whose device is where the path is; null: there is none.
-const Contact* DrivenChoice::own_contact(std::uint32_t object, std::span<const Contact> contacts,
-                                         const Vec3i& device) const noexcept {
+const Contact* DrivenChoice::own_contact(std::uint32_t object, const Contacts& contacts, const Vec3i& device) const noexcept {
   const auto exponent = static_cast<int>(scene_.grid.position);
   const Vec3 at = off_grid(device, exponent);
   for (const Contact& contact : contacts)
@@ -244,7 +257,7 @@ double DrivenChoice::drag_of(std::uint32_t object, const RigidSample& now, const
   return (drive + dot(gravity_, now.velocity) - gained * rate / kWindow) / speed - damping;
 }
 
-void DrivenChoice::read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts,
+void DrivenChoice::read(std::int64_t tick, std::span<const RigidSample> samples, const Contacts& contacts,
                         std::span<DrivenContact> told) noexcept {
   const auto device = path_.at(tick);
   for (const std::uint32_t i : scene_.moving()) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,12 +12,65 @@
 #include <vector>
 
 #include <tactus/base/fixed.h>
+#include <tactus/base/rule.h>
+#include <tactus/packet/held_list.h>
 #include <tactus/rigid/rigid_predictor.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/rigid/trigger.h>
 #include <tactus/scene/scene.h>
 
 namespace tactus {
+
+// ==== contacts ====
+
+/// The contacts of a tick that count: of those that a caller gave, the ones that break no rule, of objects that are not held.
+class Contacts {
+ public:
+  /// What decides that.
+  struct Filter {
+    const Scene* scene = nullptr;
+    const HeldList* held = nullptr;
+    bool counts(const Contact& contact) const noexcept;
+  };
+  class Iterator {
+   public:
+    Iterator(const Contact* at, const Contact* end, const Filter* filter) noexcept : at_(at), end_(end), filter_(filter) {
+      skip();
+    }
+    const Contact& operator*() const noexcept { return *at_; }
+    Iterator& operator++() noexcept {
+      ++at_;
+      skip();
+      return *this;
+    }
+    bool operator==(const Iterator& other) const noexcept { return at_ == other.at_; }
+
+   private:
+    void skip() noexcept {
+      if (filter_ == nullptr) return;
+      while (at_ != end_ && !filter_->counts(*at_)) ++at_;
+    }
+    const Contact* at_;
+    const Contact* end_;
+    const Filter* filter_;
+  };
+
+  Contacts() = default;
+  /// in   filter  null: all count.   pre  both outlive this
+  Contacts(std::span<const Contact> all, const Filter* filter) noexcept : all_(all), filter_(filter) {}
+  template <std::convertible_to<std::span<const Contact>> All>
+  Contacts(const All& all) noexcept : all_(all) {}
+  Contacts(const Contact* all, std::size_t count) noexcept : all_(all, count) {}
+  Iterator begin() const noexcept { return {all_.data(), all_.data() + all_.size(), filter_}; }
+  Iterator end() const noexcept { return {all_.data() + all_.size(), all_.data() + all_.size(), nullptr}; }
+
+ private:
+  std::span<const Contact> all_;
+  const Filter* filter_ = nullptr;
+};
+
+/// The rule that a contact breaks, R-API-1 or R-API-15, or none.   time about 10 ns
+RuleName broken_rule(const Contact& contact, const Scene& scene) noexcept;
 
 // ==== acceleration ====
 // The acceleration of true motions, from the velocities of the last three ticks.
@@ -60,7 +114,7 @@ class ForceTrend {
   explicit ForceTrend(const Scene& scene);
 
   /// The contacts of a tick, after those before it.   time O(contacts), about 30 ns each; no allocation
-  void read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts) noexcept;
+  void read(std::int64_t tick, std::span<const RigidSample> samples, const Contacts& contacts) noexcept;
   /// [1/s] the part of the least force on the object that goes per second; 0 if it grows, or was not there two ticks ago
   double sinking(std::uint32_t object) const noexcept;
 
@@ -81,7 +135,7 @@ class ErrorShare {
 
   /// in  triggers  widened;  truth  pose of the object;  sinking  ForceTrend, of all its contacts
   /// time O(contacts), about 30 ns for each of the object's
-  ErrorShare(std::uint32_t object, const Pose& truth, std::span<const Contact> contacts, const RigidTriggers& triggers,
+  ErrorShare(std::uint32_t object, const Pose& truth, const Contacts& contacts, const RigidTriggers& triggers,
              double sinking = 0) noexcept;
 
   /// in   moved  [m], turned  [rad] from the true pose to the shown one, world frame;  later  [s] from now
@@ -153,7 +207,7 @@ class DrivenChoice {
 
   /// Write what is told of each object; nothing where no device drives it, or one that is not that of the path.
   /// time O(moving objects + contacts), 0.1 us each; no allocation
-  void read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts,
+  void read(std::int64_t tick, std::span<const RigidSample> samples, const Contacts& contacts,
             std::span<DrivenContact> told) noexcept;
 
  private:
@@ -167,7 +221,7 @@ class DrivenChoice {
     Vec3 arm;                // of the point that it acts on, world frame
   };
 
-  const Contact* own_contact(std::uint32_t object, std::span<const Contact> contacts, const Vec3i& device) const noexcept;
+  const Contact* own_contact(std::uint32_t object, const Contacts& contacts, const Vec3i& device) const noexcept;
   double drag_of(std::uint32_t object, const RigidSample& now, const Vec3& rounding) const noexcept;
 
   const Scene& scene_;

@@ -90,7 +90,7 @@ SmallError error_of(const Pose& truth, const Pose& shown) noexcept {
 
 bool are_valid(const RigidTriggers& t) noexcept {
   return std::isfinite(t.heartbeat) && t.heartbeat >= 0 && t.heartbeat <= 3600 && t.weber_fraction > 0 && t.weber_fraction <= 1 &&
-         std::isfinite(t.perceptual_share) && t.perceptual_share > 0 && std::isfinite(t.force_floor) && t.force_floor > 0 &&
+         t.perceptual_share > 0 && t.perceptual_share <= 1 && std::isfinite(t.force_floor) && t.force_floor > 0 &&
          std::isfinite(t.cone_angle) && t.cone_angle > 0 && t.cone_angle <= std::numbers::pi;
 }
 
@@ -425,13 +425,13 @@ void RigidEncoder::choose_ease(Pending& update, CodedUpdate& coded, const Accele
 
 /// The update of one object, and the state after it. A predictor other than the linear one counts as knowing the acceleration.
 /// A key packet is not eased: a client may begin with it, and has shown nothing of what the path would begin with. So is what was out of
-/// interest.
+/// interest. What is held rests: it does not lean.
 Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<RigidStates>& request) const noexcept {
   const std::uint32_t object = update.object;
   const RigidState& base = request.base.objects[object];
   const Prediction prediction{base, predictor_.pose(base, request.tick)};
   const RigidState truth = truth_of(object);
-  if (truth_.acceleration() == nullptr && !choice_) return quantise(update, prediction, truth);
+  if ((truth_.acceleration() == nullptr && !choice_) || truth_.is_held(object)) return quantise(update, prediction, truth);
   const RigidTriggers bounds = widened_triggers(object);
   const Predictor predictor = choice_ ? chosen(object, truth, bounds) : Predictor::linear;
   const bool is_linear = predictor == Predictor::linear;
@@ -448,7 +448,7 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
 }
 
 /// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
-/// coarse for the permitted force error, the nearest place on it.
+/// coarse for the permitted force error, or the way too long for one update, the nearest place that it can name.
 Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction, const RigidState& told) const noexcept {
   const std::uint32_t object = update.object;
   const RigidState& truth = truth_.state(object);
@@ -469,15 +469,14 @@ Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& pr
     const auto state = reconstruct(predictor_, prediction, truth_.tick(), coded, scene_.grid);
     if (!state) return fail(Errc::internal, "R-RIG-6");
     const RigidPose shown{state->position, state->rotation};
-    if (!within(bounds.visual, shown, truth)) continue;
+    if (level > 0 && !within(bounds.visual, shown, truth)) continue;
     const double felt = haptic_ratio_of(object, shown);
     if ((level > 0 || finest) && felt > bounds.widening) continue;
     update.after.path.state = *state;
     if (felt <= kHapticShare * bounds.widening) return coded;
     finest = coded;
   }
-  if (!finest) return fail(Errc::invalid_argument, "R-API-7");
-  return *finest;
+  return *finest;  // that of level 0, if no other
 }
 
 Result<Payload> RigidEncoder::code_all(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept {

@@ -52,7 +52,6 @@ class RigidEncoder {
   /// Code the tick that the truth was read for.
   /// time O(objects that move, are touched, or whose prediction does), < 1 us per object, < 4 us per update; what others found out with the
   ///      same: 50 ns and 100 ns. What rests costs nothing. No allocation.
-  /// err  invalid_argument R-API-7 the residual from the predicted pose exceeds what an update can code
   Result<Payload> encode(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
   void know(const DevicePath& path);  ///< of the receiver's device.   pre  it outlives the encoder.   allocates
   void commit(const RigidStates& base, RigidStates& next) noexcept;

@@ -28,13 +28,6 @@ bool obeys_dof(const RigidObject& object, const RigidState& truth) noexcept {
   return true;
 }
 
-bool is_valid(const Contact& c, const Scene& scene) noexcept {
-  if (c.kind == ContactKind::none) return true;
-  const bool unit = c.kind == ContactKind::spring || std::abs(norm(c.normal) - 1) <= 1e-6;
-  return c.kind <= ContactKind::spring && c.object < scene.objects.size() && is_finite(c.point) && is_finite(c.normal) && unit &&
-         is_finite(c.device) && std::isfinite(c.stiffness) && c.stiffness > 0;
-}
-
 bool is_same(const RigidSample& a, const RigidSample& b) noexcept {
   return a.pose.position == b.pose.position && a.pose.rotation == b.pose.rotation && a.velocity == b.velocity &&
          a.angular_velocity == b.angular_velocity;
@@ -42,13 +35,19 @@ bool is_same(const RigidSample& a, const RigidSample& b) noexcept {
 
 }  // namespace
 
-RigidTruth::RigidTruth(const Scene& scene, const RigidTriggers& triggers)
+RigidTruth::RigidTruth(const Scene& scene, const RigidTriggers& triggers, HeldList& held)
     : scene_(scene),
-      states_(scene.objects.size()),
-      last_(scene.objects.size()),
+      held_(held),
+      filter_{&scene, &held},
       has_left_(scene.objects.size(), 0),
       moved_at_(scene.objects.size(), 0),
       touched_at_(scene.objects.size(), 0) {
+  states_.reserve(scene.objects.size());
+  last_.reserve(scene.objects.size());
+  for (const RigidObject& object : scene.objects) {
+    states_.push_back({.position = object.initial.position, .rotation = object.initial.rotation});
+    last_.push_back({.pose = to_pose(object.initial, scene.grid.position), .velocity = {}, .angular_velocity = {}});
+  }
   for (auto* list : {&moved_, &recent_, &touched_, &left_}) list->reserve(scene.objects.size());
   if (triggers.reduction == Reduction::none) return;
   if (scene.is_eased) acceleration_.emplace(scene);
@@ -56,35 +55,68 @@ RigidTruth::RigidTruth(const Scene& scene, const RigidTriggers& triggers)
   if (has_predictors(scene)) past_.emplace(scene);
 }
 
-Result<void> RigidTruth::take(std::uint32_t object, const RigidSample& sample) noexcept {
-  TACTUS_TRY(states_[object], to_grid(sample, tick_, scene_.grid));
-  if (!obeys_dof(scene_.objects[object], states_[object])) return fail(Errc::invalid_argument, "R-API-6");
+void RigidTruth::take(std::uint32_t object, const RigidSample& sample) noexcept {
+  const auto state = to_grid(sample, tick_, scene_.grid);
+  if (!state) return hold(object, state.error().rule);
+  if (!obeys_dof(scene_.objects[object], *state)) return hold(object, RuleName("R-API-6"));
+  states_[object] = *state;
   last_[object] = sample;
   moved_.push_back(object);
   const RigidPose& initial = scene_.objects[object].initial;
   if (has_left_[object] != 0 || (states_[object].position == initial.position && states_[object].rotation == initial.rotation))
-    return {};
+    return;
   has_left_[object] = 1;
   left_.push_back(object);
-  return {};
+}
+
+/// Where it was last, at rest.
+void RigidTruth::hold(std::uint32_t object, const char* rule) noexcept {
+  if (!held_.hold({.part = TruthPart::object, .index = object, .since = tick_, .rule = rule})) return;
+  RigidState& state = states_[object];
+  state = {.tick = tick_, .position = state.position, .rotation = state.rotation};
+  last_[object] = {.pose = last_[object].pose, .velocity = {}, .angular_velocity = {}};
+  moved_.push_back(object);
+}
+
+/// Those that were not looked at, as they are not named as moved, are what they were; those that are where they are held are good again.
+/// out  one is held
+bool RigidTruth::look_at_held(std::span<const RigidSample> samples) noexcept {
+  bool out = false;
+  const auto parts = held_.parts();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].part != TruthPart::object) continue;
+    const std::uint32_t object = parts[i].index;
+    if (!held_.is_seen(i) && !is_same(samples[object], last_[object])) held_.keep(i);
+    out = out || held_.is_seen(i);
+  }
+  return out;
 }
 
 /// One that has not moved is where it was, to the bit.
-Result<void> RigidTruth::read(std::span<const RigidSample> samples,
-                              std::optional<std::span<const std::uint32_t>> moved) noexcept {
+void RigidTruth::read(std::span<const RigidSample> samples, std::optional<std::span<const std::uint32_t>> moved) noexcept {
   moved_.clear();
-  const bool all = std::exchange(failed_, true);
+  const bool all = reads_ == 0;
   for (const std::uint32_t i : all ? scene_.moving() : moved.value_or(scene_.moving())) {
     const bool is_known = i < samples.size() && scene_.objects[i].dof != Dof::none;
-    if (is_known && (all || !is_same(samples[i], last_[i]))) TACTUS_CHECK(take(i, samples[i]));
+    if (is_known && (all || !is_same(samples[i], last_[i]))) take(i, samples[i]);
   }
-  failed_ = false;
-  return {};
+  if (!all) return;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (scene_.objects[i].dof == Dof::none) last_[i] = samples[i];
 }
 
 void RigidTruth::read(std::span<const Contact> contacts) noexcept {
+  bool is_sound = true;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const RuleName rule = broken_rule(contacts[i], scene_);
+    if (!rule) continue;
+    is_sound = false;
+    held_.hold({.part = TruthPart::contact, .index = static_cast<std::uint32_t>(i), .since = tick_, .rule = rule});
+  }
+  const bool is_whole = is_sound && samples_.data() != last_.data();  // nothing is held
+  contacts_ = Contacts(contacts, is_whole ? nullptr : &filter_);
   touched_.clear();
-  for (const Contact& contact : contacts) {
+  for (const Contact& contact : contacts_) {
     if (contact.kind == ContactKind::none || touched_at_[contact.object] == reads_) continue;
     touched_at_[contact.object] = reads_;
     touched_.push_back(contact.object);
@@ -104,16 +136,12 @@ void RigidTruth::look_back() noexcept {
 
 Result<void> RigidTruth::read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts,
                               std::optional<std::span<const std::uint32_t>> moved) noexcept {
-  const bool sound = std::ranges::all_of(contacts, [&](const Contact& c) { return is_valid(c, scene_); });
-  if (samples.size() != scene_.objects.size() || !sound) return fail(Errc::invalid_argument, "R-API-5");
-  const std::int64_t before = std::exchange(tick_, tick);
-  if (const auto done = read(samples, moved); !done) {
-    tick_ = before;
-    return done;
-  }
+  if (samples.size() != scene_.objects.size()) return fail(Errc::invalid_argument, "R-API-5");
+  tick_ = tick;
+  read(samples, moved);
+  const bool holds = !held_.empty() && look_at_held(samples);
   ++reads_;
-  samples_ = samples;
-  contacts_ = contacts;
+  samples_ = holds ? std::span<const RigidSample>(last_) : samples;
   read(contacts);
   look_back();
   return {};

@@ -25,7 +25,7 @@ namespace tactus {
 ///   rotation          quarter-angle vector    1           20        0.95e-6 (3.8e-6 rad); |v| = tan(angle / 4)
 ///   angular_velocity  angular velocity        rad/s       12        0.24 mrad/s
 struct GridExponents {
-  std::uint8_t position = 22;
+  std::uint8_t position = 22;  ///< of positions up to 512 m from the origin: SceneBuilder::world_size() of larger worlds
   std::uint8_t velocity = 17;
   std::uint8_t rotation = 20;
   std::uint8_t angular_velocity = 12;

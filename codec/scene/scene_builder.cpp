@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <unordered_set>
 #include <utility>
 
@@ -118,8 +119,74 @@ Result<ElasticBody> on_grid(ElasticPhysics physics, unsigned position_exp) {
 template <class Promise>
 bool are_fractions(const Promise& promise) noexcept {
   const auto fits = [](double p) { return p >= 0 && p <= 1; };  // false for NaN
-  return fits(promise.rigid.weber_fraction) && fits(promise.deformables.weber_fraction.value_or(0)) &&
-         fits(promise.loads.weber_fraction);
+  return fits(promise.rigid.weber_fraction) && fits(promise.rigid.perceptual_share) &&
+         fits(promise.deformables.weber_fraction.value_or(0)) && fits(promise.loads.weber_fraction);
+}
+
+/// A number for people.
+std::string figure(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+/// [m] how far from the origin positions get.
+double reach_of(unsigned position_exp) noexcept { return std::ldexp(1.0, 31 - static_cast<int>(position_exp)); }
+
+constexpr unsigned kCoarsestGrid = 8;  // R-STR-7
+constexpr double kSteps = 8;           // of the grid in a bound: as of a sender's
+
+/// The finest grid of positions that reaches so far; nothing: none does.
+std::optional<GridExponents> grid_for(double metres, GridExponents grid) noexcept {
+  if (!(metres > 0 && metres < reach_of(kCoarsestGrid))) return std::nullopt;
+  while (metres >= reach_of(grid.position)) --grid.position;
+  grid.velocity = std::min(grid.velocity, grid.position);
+  return grid;
+}
+
+/// The finest bound of a distance [m] that is promised; 0: none.
+double finest_bound(const RigidTriggers& rigid, const DeformableThresholds& mesh, bool has_rigid, bool has_meshes) noexcept {
+  double out = has_rigid ? rigid.visual_position : 0;
+  if (has_rigid && rigid.haptic == HapticRule::fixed) out = std::min(out, rigid.fixed_position);
+  if (has_meshes && mesh.visual > 0) out = out > 0 ? std::min(out, mesh.visual) : mesh.visual;
+  return out;
+}
+
+/// The grid is too coarse for the bound: why, and how large the world may be.
+std::string too_large(double metres, double bound) {
+  unsigned finest = 0;  // grid that the bound needs
+  while (finest < 30 && std::ldexp(kSteps, -static_cast<int>(finest)) > bound) ++finest;
+  return "a world of " + figure(metres) + " m and a bound of " + figure(1e3 * bound) +
+         " mm do not go together: such a bound wants " + figure(kSteps) + " steps of the position grid, which then reaches " +
+         figure(reach_of(finest)) + " m";
+}
+
+std::string beyond(unsigned position_exp) {
+  return "positions of this scene reach " + figure(reach_of(position_exp)) + " m from the origin along each axis";
+}
+
+struct Counts {
+  std::size_t objects, vertices = 0, triangles = 0;
+};
+
+Counts counts_of(const SceneSpec& spec) noexcept {
+  Counts out{spec.objects.size() + spec.deformables.size()};
+  for (const DeformableObject& object : spec.deformables)
+    out.vertices += object.rest.size(), out.triangles += object.triangles.size();
+  return out;
+}
+
+/// A scene is beyond the limits.
+std::string too_many(const Counts& of, const DecodeLimits& limits) {
+  std::string out;
+  const auto part = [&out](std::size_t count, std::uint32_t most, const char* what) {
+    if (count > most)
+      out += (out.empty() ? "" : ", ") + std::to_string(count) + what + " where " + std::to_string(most) + " are allowed";
+  };
+  part(of.objects, limits.objects, " objects");
+  part(of.vertices, limits.vertices, " vertices");
+  part(of.triangles, limits.triangles, " triangles");
+  return out;
 }
 
 }  // namespace
@@ -136,6 +203,11 @@ SceneBuilder& SceneBuilder::deformable(std::string name, TriMesh surface, Deform
 
 SceneBuilder& SceneBuilder::grid(const GridExponents& exponents) {
   spec_.grid = exponents;
+  return *this;
+}
+
+SceneBuilder& SceneBuilder::world_size(double metres) {
+  world_size_ = metres;
   return *this;
 }
 
@@ -202,8 +274,8 @@ SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const Deformable
 }
 
 tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& limits) try {
-  const auto refuse = [](const Error& error, std::string object) {
-    return tl::make_unexpected(SceneFinding{error, std::move(object)});
+  const auto refuse = [](const Error& error, std::string object, std::string detail = {}) {
+    return tl::make_unexpected(SceneFinding{error, std::move(object), std::move(detail)});
   };
   SceneBuilder taken = std::exchange(*this, SceneBuilder(spec_.tick_rate));
   if (taken.is_of_nothing_) return refuse({Errc::invalid_argument, RuleName("R-API-14"), 0}, {});
@@ -212,6 +284,19 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
   if (!(ticks >= 0)) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});
   spec.max_extrapolation = static_cast<std::uint16_t>(std::clamp(ticks, 1.0, 65535.0));
   if (const RuleName rule = broken_parameter_rule(spec)) return refuse({Errc::invalid, rule, 0}, {});  // before the grid is used
+  if (taken.world_size_) {
+    const double metres = *taken.world_size_;
+    const auto grid = grid_for(metres, spec.grid);
+    if (!grid)
+      return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {},
+                    "a world of " + figure(metres) + " m: it is above 0 m and below " + figure(reach_of(kCoarsestGrid)) + " m");
+    spec.grid = *grid;
+    const bool moves = std::ranges::any_of(taken.rigid_, [](const Rigid& object) { return object.dof != Dof::none; });
+    const double bound =
+        taken.promise_ ? finest_bound(taken.promise_->rigid, taken.promise_->deformables, moves, !taken.deformables_.empty()) : 0;
+    if (bound > 0 && bound < std::ldexp(kSteps, -static_cast<int>(spec.grid.position)))
+      return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {}, too_large(metres, bound));
+  }
   const auto constants = constants_of(taken.motion_, spec.grid);
   if (!constants) return refuse(constants.error(), {});
   const auto interest = interest_of(taken.interest_, spec.grid.position);
@@ -219,7 +304,10 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
   std::unordered_set<std::string> names;
   for (Rigid& object : taken.rigid_) {
     const auto initial = to_grid(object.initial, spec.grid.position);
-    if (!initial) return refuse(initial.error(), object.name);
+    if (!initial) {
+      const bool is_far = initial.error().rule == std::string_view("R-API-2");
+      return refuse(initial.error(), object.name, is_far ? beyond(spec.grid.position) : std::string());
+    }
     spec.objects.push_back({std::move(object.name), object.dof, *initial});
     const RigidObject& made = spec.objects.back();
     if (const RuleName rule = broken_object_rule(made)) return refuse({Errc::invalid, rule, 0}, made.name);
@@ -254,9 +342,11 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
     spec.deformables.push_back(std::move(*object));
   }
   if (taken.promise_) spec.bounds = bounds_of(spec, taken.promise_->rigid, taken.promise_->deformables, taken.promise_->loads);
+  const Counts counts = counts_of(spec);
   auto scene = Scene::create(std::move(spec), limits);
-  if (!scene) return refuse(scene.error(), {});
-  return *scene;
+  if (scene) return *scene;
+  const bool is_too_large = scene.error().rule == std::string_view("R-STR-14");
+  return refuse(scene.error(), {}, is_too_large ? too_many(counts, limits) : std::string());
 } catch (const std::bad_alloc&) {
   return tl::make_unexpected(SceneFinding{out_of_memory().value(), {}});
 }

@@ -67,7 +67,8 @@ struct ElasticPhysics {
 /// What went wrong, and with which object.
 struct SceneFinding {
   Error error;
-  std::string object;  ///< empty: no particular object
+  std::string object;    ///< empty: no particular object
+  std::string detail{};  ///< figures of this particular case; empty: describe(error) says all
   operator Error() const noexcept { return error; }
 };
 
@@ -82,7 +83,11 @@ class SceneBuilder {
   SceneBuilder& rigid(std::string name, const Pose& initial = {}, std::uint8_t dof = Dof::all);
   /// in   surface  V vertices [m] at rest, world frame
   SceneBuilder& deformable(std::string name, TriMesh surface, DeformableCoding coding = {});
+  /// The grids as they are; those of GridExponents by themselves, whose positions reach +-512 m.
   SceneBuilder& grid(const GridExponents& exponents);
+  /// How far from the origin positions get, along any axis [m]. build() takes the finest grid of positions that reaches so far, and none finer
+  /// than grid() says; it refuses a world that is too large for the bounds of promise(), with both figures.
+  SceneBuilder& world_size(double metres);
   /// An object without updates stops moving after so long [s].
   SceneBuilder& extrapolate(double seconds);
   /// How many states a receiver keeps as baselines, 1..64. Losing fewer packets than that in a row interrupts nothing.
@@ -109,9 +114,9 @@ class SceneBuilder {
   /// Declare the bounds that hold at a client that gets every packet.
   SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
 
-  /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface or stiffness does not fit its grid; R-API-14 driven()
+  /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface, stiffness or world does not fit its grid; R-API-14 driven()
   ///      before any rigid object or elastic() before any deformable one; those of Scene::create
-  /// in   limits  those of the receivers: larger than usual for a scene of more than 4096 objects, say
+  /// in   limits  those of the receivers, which must be given the same: larger than usual for a scene of more than 4096 objects, say
   tl::expected<SharedScene, SceneFinding> build(const DecodeLimits& limits = {});
 
  private:
@@ -130,6 +135,7 @@ class SceneBuilder {
 
   SceneSpec spec_;
   std::optional<double> extrapolation_;  // [s]
+  std::optional<double> world_size_;     // [m]
   MotionPhysics motion_;
   std::optional<std::array<double, 2>> interest_;  // full and reach [m]
   RigidProfile rigid_profile_ = RigidProfile::main;

@@ -363,6 +363,11 @@ Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample
   const auto rate = static_cast<std::uint64_t>(epoch.exchange.sender->scene()->tick_rate);
   const auto tick = static_cast<std::int64_t>((now - epoch.device_start) * rate / 1'000'000);
   if (tick <= epoch.device_tick) return {};
+  std::array<std::int32_t, 3> place{};
+  std::array<std::int32_t, 4> turn{};
+  const std::uint8_t exponent = epoch.exchange.sender->scene()->grid.position;
+  const RuleName broken =
+      is_finite(sample.velocity) ? quantise({sample.position, sample.orientation}, exponent, place, turn) : RuleName("R-API-1");
   TACTUS_CHECK(epoch.exchange.submit(now, tick, epoch.device->of(tick, sample, contact)));
   epoch.device_tick = tick;
   in.feels = contact.has_value();
@@ -372,6 +377,7 @@ Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample
     in.buttons_number = 0;
     in.buttons_at = now;
   }
+  if (broken) return fail(Errc::invalid_argument, broken);
   return {};
 }
 

@@ -58,7 +58,7 @@ class SessionClient {
   Result<void> handle_datagram(std::uint64_t now, std::span<const std::uint8_t> datagram) noexcept;
   void handle_timeout(std::uint64_t now) noexcept;
   /// The device now: at most one sample per tick counts. Nothing happens unless the session is live and the client participates.
-  /// err  as Sender::encode
+  /// err  R-API-1, 2, 3: a sample that breaks one counts as the last good one, at rest; others as Sender::encode
   Result<void> submit(std::uint64_t now, const DeviceSample& sample, const std::optional<DeviceContact>& contact) noexcept;
 
   /// In a scene with interest: where the user looks from [m, world frame], apart from the device of a participant. Objects far from both are told

@@ -241,6 +241,8 @@ Result<void> SessionServer::submit(std::uint64_t now, std::int64_t tick, const T
   return first;
 }
 
+std::span<const HeldPart> SessionServer::held() const noexcept { return impl_->served.truth->held(); }
+
 void SessionServer::seat(std::uint16_t client, std::uint8_t seat) noexcept { impl_->connections[client]->seat(seat); }
 
 void SessionServer::close(std::uint16_t client, LeaveReason reason) noexcept {

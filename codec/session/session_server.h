@@ -74,8 +74,11 @@ class SessionServer {
   /// pauses for more than 100 ms may go on with the next number.
   /// time SharedTruth::read once, and 0.5 us per live client; what clients have in common is worked out once (reports/scale). What rests
   ///      costs nothing
+  /// A bad object does not stop the others: held().
   /// err  as Sender::encode, the first; all clients that can are served
   Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;
+  /// As Sender::held(), of the last submit() that found a live client.   out  valid until the next call
+  std::span<const HeldPart> held() const noexcept;
   /// [us] The clock that clients are told: by it tick n is at create() or replace_scene() + n ticks. Before the first tick that of the program.
   std::uint64_t clock(std::uint64_t now) const noexcept;
   /// Another scene: clients get a new epoch, and show the old one until they hold the new. Ticks begin anew.   err  as create()

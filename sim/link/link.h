@@ -36,6 +36,7 @@ class Network {
   virtual std::span<const DeviceSample> heard() const noexcept = 0;
   /// The truth of the tick goes; what takes no time arrives.
   virtual Result<void> to_clients(std::int64_t tick, const Truth& truth) = 0;
+  virtual std::span<const HeldPart> held() const noexcept { return {}; }  ///< SessionServer::held()
 
   /// What a user's client has to show now.
   struct View {

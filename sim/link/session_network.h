@@ -49,6 +49,7 @@ class SessionNetwork final : public Network {
                          std::span<const std::optional<DeviceContact>> contacts) override;  ///< err  of SessionClient::submit
   std::span<const DeviceSample> heard() const noexcept override { return heard_; }
   Result<void> to_clients(std::int64_t tick, const Truth& truth) override;  ///< err  of SessionServer::submit
+  std::span<const HeldPart> held() const noexcept override { return server_->held(); }
   View view(std::size_t user) noexcept override;
   /// The clients end their sessions, and a second passes.
   void leave() noexcept;

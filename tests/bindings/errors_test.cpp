@@ -83,6 +83,44 @@ TEST(CErrors, SceneRefuses) {
   EXPECT_REFUSED(kBad, tactus_scene_get_rigid_bounds, nullptr, &bounds);
 }
 
+TEST(CErrors, BuilderTellsFigures) {
+  const auto refused = [](const tactus_scene_options& options, const tactus_pose* pose, bool promises, const char* rule) {
+    tactus_scene_builder* raw = nullptr;
+    EXPECT_EQ(tactus_scene_builder_create(&options, &raw, nullptr), TACTUS_OK);
+    const Builder builder(raw);
+    for (const char* name : {"a", "b", "c"}) EXPECT_EQ(tactus_scene_builder_rigid(raw, name, pose, 63, nullptr), TACTUS_OK);
+    if (promises) EXPECT_EQ(tactus_scene_builder_promise(raw, nullptr, nullptr, nullptr, nullptr), TACTUS_OK);
+    tactus_scene* scene = nullptr;
+    tactus_error error{};
+    EXPECT_NE(tactus_scene_builder_build(raw, &scene, &error), TACTUS_OK);
+    EXPECT_STREQ(error.rule, rule);
+    return std::string(tactus_scene_builder_detail(raw));
+  };
+  auto options = filled<tactus_scene_options_init, tactus_scene_options>();
+  const tactus_pose far{{0, 600, 0}, {1, 0, 0, 0}};
+  EXPECT_NE(refused(options, &far, false, "R-API-2").find("reach 512 m"), std::string::npos);
+  auto limits = filled<tactus_limits_init, tactus_limits>();
+  limits.objects = 2;
+  options.limits = &limits;
+  EXPECT_EQ(refused(options, nullptr, false, "R-STR-14"), "3 objects where 2 are allowed");
+  options.limits = nullptr;
+  options.world_size = 4e6;  // the default bound of 6 mm needs 8 steps
+  EXPECT_NE(refused(options, nullptr, true, "R-API-4").find("6 mm"), std::string::npos);
+  options.world_size = 1000;
+  tactus_scene_builder* raw = nullptr;
+  ASSERT_EQ(tactus_scene_builder_create(&options, &raw, nullptr), TACTUS_OK);
+  const Builder builder(raw);
+  ASSERT_EQ(tactus_scene_builder_rigid(raw, "far", &far, 63, nullptr), TACTUS_OK);
+  tactus_scene* scene = nullptr;
+  ASSERT_EQ(tactus_scene_builder_build(raw, &scene, nullptr), TACTUS_OK);
+  EXPECT_STREQ(tactus_scene_builder_detail(raw), "");
+  EXPECT_STREQ(tactus_scene_builder_detail(nullptr), "");
+  const Scene owned(scene);
+  auto info = sized<tactus_scene_info>();
+  ASSERT_EQ(tactus_scene_get(scene, &info, nullptr), TACTUS_OK);
+  EXPECT_EQ(info.position_exp, 21u);
+}
+
 TEST(CErrors, BuilderRefusesAndNamesTheCulprit) {
   tactus_scene_builder* raw = nullptr;
   tactus_scene* scene = nullptr;
@@ -206,15 +244,36 @@ TEST(CErrors, SenderRefuses) {
   contact.kind = 17;
   truth.truth.contacts = &contact;
   truth.truth.contact_count = 1;
-  EXPECT_REFUSED("R-API-5", tactus_sender_encode, sender.get(), 0, &truth.truth, &count);
+  std::size_t held_count = 0;
+  ASSERT_EQ(tactus_sender_encode(sender.get(), 0, &truth.truth, &count, nullptr), TACTUS_OK);
+  EXPECT_REFUSED("R-API-13", tactus_sender_held, sender.get(), nullptr, 0, &held_count);
+  ASSERT_EQ(held_count, 1u);
+  tactus_held held{};
+  ASSERT_EQ(tactus_sender_held(sender.get(), &held, 1, &held_count, nullptr), TACTUS_OK);
+  EXPECT_TRUE(held.part == TACTUS_PART_CONTACT && held.index == 0 && held.since == 0);
+  EXPECT_STREQ(held.rule, "R-API-15");
+  EXPECT_STREQ(held.name, "");
+  EXPECT_REFUSED(kBad, tactus_sender_held, nullptr, &held, 1, &held_count);
+  EXPECT_REFUSED(kBad, tactus_sender_held, sender.get(), &held, 1, nullptr);
   truth.truth.contact_count = 0;
   truth.truth.loads = &contact.stiffness;
   truth.truth.load_count = 2;
-  EXPECT_REFUSED("R-API-5", tactus_sender_encode, sender.get(), 0, &truth.truth, &count);
+  EXPECT_REFUSED("R-API-5", tactus_sender_encode, sender.get(), 1, &truth.truth, &count);
   truth.truth.load_count = 0;
   truth.objects[1].pose.position[0] = NAN;
-  EXPECT_REFUSED("R-API-1", tactus_sender_encode, sender.get(), 0, &truth.truth, &count);
+  ASSERT_EQ(tactus_sender_encode(sender.get(), 1, &truth.truth, &count, nullptr), TACTUS_OK);
+  ASSERT_EQ(tactus_sender_held(sender.get(), &held, 1, &held_count, nullptr), TACTUS_OK);
+  ASSERT_EQ(held_count, 1u);
+  EXPECT_TRUE(held.part == TACTUS_PART_OBJECT && held.index == 1 && held.since == 1);
+  EXPECT_STREQ(held.rule, "R-API-1");
+  tactus_rigid_info rigid{};
+  rigid.size = sizeof rigid;
+  ASSERT_EQ(tactus_scene_get_rigid(scene.get(), 1, &rigid, nullptr), TACTUS_OK);
+  EXPECT_STREQ(held.name, rigid.name);
+  truth.objects[1].pose.position[0] = 0;
   ASSERT_EQ(tactus_sender_encode(sender.get(), 5, truth.at(0), &count, nullptr), TACTUS_OK);
+  ASSERT_EQ(tactus_sender_held(sender.get(), nullptr, 0, &held_count, nullptr), TACTUS_OK);
+  EXPECT_EQ(held_count, 0u);
   EXPECT_REFUSED("R-API-5", tactus_sender_encode, sender.get(), 5, truth.at(5), &count);
   EXPECT_REFUSED(kBad, tactus_sender_packet, sender.get(), 9, nullptr, nullptr, 0, &size);
   EXPECT_REFUSED(kBad, tactus_sender_acknowledge, sender.get(), 7, 1);

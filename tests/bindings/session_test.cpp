@@ -65,6 +65,33 @@ struct Ends {
   }
 };
 
+/// A bad object is named; the other one goes on.
+TEST(CSession, NamesWhatIsHeld) {
+  Ends ends(nullptr, TACTUS_ROLE_OBSERVER);
+  Truth truth;
+  std::size_t count = 7;
+  EXPECT_EQ(tactus_server_held(ends.server.get(), nullptr, 0, &count, nullptr), TACTUS_OK);
+  EXPECT_EQ(count, 0u);
+  ASSERT_EQ(tactus_client_open(ends.client.get(), 0, 2, nullptr), TACTUS_OK);
+  ends.run(truth, 0, 300);
+  for (std::int64_t tick = 300; tick < 400; ++tick) {
+    truth.at(tick);
+    if (tick < 350) truth.objects[1].pose.position[0] = -1e6;
+    ASSERT_EQ(tactus_server_submit(ends.server.get(), static_cast<std::uint64_t>(1000 * tick), tick, &truth.truth, nullptr),
+              TACTUS_OK);
+    ends.exchange(static_cast<std::uint64_t>(1000 * tick));
+    tactus_held held[2]{};
+    ASSERT_EQ(tactus_server_held(ends.server.get(), held, 2, &count, nullptr), TACTUS_OK);
+    ASSERT_EQ(count, tick < 350 ? 1u : 0u) << tick;
+    if (count == 0) continue;
+    EXPECT_TRUE(held[0].part == TACTUS_PART_OBJECT && held[0].index == 1 && held[0].since == 300);
+    EXPECT_STREQ(held[0].rule, "R-API-2");
+    const tactus_error error{TACTUS_INVALID_ARGUMENT, held[0].rule, 0};
+    EXPECT_NE(std::string(tactus_error_remedy(&error)).find("world_size"), std::string::npos);
+  }
+  EXPECT_REFUSED("R-API-12", tactus_server_held, nullptr, nullptr, 0, &count);
+}
+
 TEST(CSession, BringsSceneStatesAndDevice) {
   Ends ends;
   Truth truth;

@@ -247,7 +247,7 @@ TEST_F(CSizes, OfAnEncoder) {
             Direction::option,
             initialised<tactus_scene_options_init, tactus_scene_options>(),
             taking<tactus_scene_options>(build),
-            {104}},
+            {104, 120}},
            {"deformable_options", 112, Direction::option,
             initialised<tactus_deformable_options_init, tactus_deformable_options>(), taking<tactus_deformable_options>(deform)},
            {"driven_physics", 72, Direction::option, initialised<tactus_driven_physics_init, tactus_driven_physics>(),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <string>
 
 #include "tests/property/allocated.h"
 #include "tests/unit/deformable_fixture.h"
@@ -105,6 +106,44 @@ TEST(Allocation, ASceneOfSeveralSubstreamsAllocatesNothing) {
     EXPECT_EQ(counted, 0u);
     EXPECT_GT(decoded, 300u);
   }
+}
+
+/// Objects, contacts, shapes and touches that come and go as held ones.
+TEST(Allocation, WhatIsHeldAllocatesNothing) {
+  constexpr std::size_t kObjects = 20;
+  const TriMesh mesh = testing::sheet(6, 6);
+  SceneBuilder builder(60);
+  for (std::size_t i = 0; i < kObjects; ++i) builder.rigid("o" + std::to_string(i));
+  const SharedScene scene = builder.deformable("sheet", mesh).build().value();
+  auto sender = Sender::create(scene).value();
+  testing::DentedSheet sheet(mesh, 6);
+  std::vector<testing::SheetFrame> frames;
+  for (std::int64_t tick = 0; tick < 200; ++tick) frames.push_back(sheet.frame(tick));
+  std::vector<testing::Motion> motions;
+  for (std::size_t i = 0; i < kObjects; ++i) motions.emplace_back(i);
+  std::vector<RigidSample> samples(kObjects);
+  std::vector<Contact> contacts(40);
+  std::size_t held = 0;
+  const std::uint64_t counted = count_of([&] {
+    for (std::int64_t tick = 0; tick < 200; ++tick) {
+      const auto t = static_cast<std::size_t>(tick);
+      for (std::size_t i = 0; i < kObjects; ++i) {
+        samples[i] = motions[i].step(1.0 / 60);
+        if ((t / 10 + i) % 3 == 0) samples[i].pose.position.x = 1e9;
+      }
+      for (std::size_t i = 0; i < contacts.size(); ++i) {
+        contacts[i] = testing::touch(static_cast<std::uint32_t>(i % kObjects), samples[i % kObjects].pose, 0.001);
+        if ((t + i) % 2 == 0) contacts[i].stiffness = 0;
+      }
+      if (t % 4 == 1) frames[t].displacements[3] = 1e9F;
+      DeformableTruth shape = frames[t].truth();
+      if (t % 4 == 2) shape.touch = SurfaceTouch{0, -1, 500};
+      if (!sender.encode(tick, {samples, contacts, {&shape, 1}})) return;
+      held += sender.held().size();
+    }
+  });
+  EXPECT_EQ(counted, 0u);
+  EXPECT_GT(held, 4000u);
 }
 
 TEST(Allocation, RefusedInputAllocatesNothing) {

@@ -259,41 +259,48 @@ TEST(DeformableExtremes, Slivers) {
   EXPECT_EQ(watch.broken(), 0U);
 }
 
-TEST(DeformableEncoder, RefusesWhatIsNotFiniteOrOutOfRangeAndGoesOn) {
+TEST(DeformableEncoder, HoldsWhatIsNotFiniteOrOutOfRangeAndGoesOn) {
   for (const DeformableProfile profile : {DeformableProfile::thesis, DeformableProfile::main}) {
     const TriMesh mesh = testing::sheet(kSquares, kSquares);
     DentedSheet sheet(mesh, kSquares);
     SheetEnds ends(shared(sheet_spec(mesh, profile)));
     const SheetFrame good = sheet.frame(20);
     ends.send(0, good);
-    const std::uint64_t hash = ends.sender.state_hash(1);
+    std::int64_t tick = 0;
     constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
-    const auto refused = [&](const SheetFrame& frame, std::int64_t tick, std::string_view rule) {
-      const auto packets = ends.encode(tick, frame);
-      ASSERT_FALSE(packets) << rule;
-      EXPECT_EQ(packets.error().code, Errc::invalid_argument);
-      EXPECT_EQ(packets.error().rule, rule);
+    const auto refused = [&](const SheetFrame& frame, std::int64_t at) {
+      const std::uint64_t hash = ends.sender.state_hash(1);
+      const auto packets = ends.encode(at, frame);
+      ASSERT_FALSE(packets);
+      EXPECT_STREQ(packets.error().rule, "R-API-5");
       EXPECT_EQ(ends.sender.state_hash(1), hash);
+    };
+    const auto held = [&](const SheetFrame& frame, TruthPart part, std::string_view rule) {
+      ASSERT_TRUE(ends.encode(++tick, frame)->empty()) << "the last shape is shown";
+      ASSERT_EQ(ends.sender.held().size(), 1u) << rule;
+      const HeldPart& found = ends.sender.held()[0];
+      EXPECT_TRUE(found.part == part && found.rule == rule) << found.rule;
     };
     for (const float bad : {kNan, kInf, -kInf}) {
       SheetFrame frame = good;
       frame.displacements[3 * 77 + 1] = bad;
-      refused(frame, 1, "R-API-1");
+      held(frame, TruthPart::shape, "R-API-1");
       frame = good;
       frame.touch = SurfaceTouch{0, static_cast<double>(bad), 500};
-      refused(frame, 1, "R-API-1");
+      held(frame, TruthPart::touch, "R-API-1");
     }
     SheetFrame frame = good;
     frame.displacements[0] = 32.1F;
-    refused(frame, 1, "R-API-2");
+    held(frame, TruthPart::shape, "R-API-2");
     frame.displacements[0] = std::numeric_limits<float>::lowest();
-    refused(frame, 1, "R-API-2");
-    refused(good, 0, "R-API-5");  // the tick was there
-    refused({moved_by(3, {}), {}}, 1, "R-API-5");
+    held(frame, TruthPart::shape, "R-API-2");
+    refused(good, tick);  // the tick was there
+    refused({moved_by(3, {}), {}}, tick + 1);
     for (const SurfaceTouch touch :
          {SurfaceTouch{1000000, 1, 500}, SurfaceTouch{0, -1, 500}, SurfaceTouch{0, 1, 0}, SurfaceTouch{0, 1, -3}})
-      refused({good.displacements, touch}, 1, "R-API-5");
-    ends.send(1, sheet.frame(30));
+      held({good.displacements, touch}, TruthPart::touch, "R-API-15");
+    ends.send(++tick, sheet.frame(30));
+    EXPECT_TRUE(ends.sender.held().empty());
     EXPECT_EQ(ends.packets, 2U);
   }
 }

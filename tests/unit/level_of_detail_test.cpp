@@ -81,7 +81,8 @@ class World {
 TEST(LevelsOfDetail, RiseWithTheDistanceAndStayWhereSomebodyStandsAtABorder) {
   const SharedScene scene = world(1);
   LevelsOfDetail levels(*scene);
-  RigidTruth truth(*scene, {});
+  HeldList held(*scene);
+  RigidTruth truth(*scene, {}, held);
   RigidSample body;
   std::int64_t tick = 0;
   const auto at = [&](double x) {
@@ -117,7 +118,8 @@ TEST(LevelsOfDetail, RiseWithTheDistanceAndStayWhereSomebodyStandsAtABorder) {
 TEST(LevelsOfDetail, WhatIsTouchedIsToldInFullWithinReach) {
   const SharedScene scene = world(1);
   LevelsOfDetail levels(*scene);
-  RigidTruth truth(*scene, {});
+  HeldList held(*scene);
+  RigidTruth truth(*scene, {}, held);
   const Vec3 origin;
   levels.look_from({&origin, 1});
   RigidSample body;
@@ -134,7 +136,8 @@ TEST(LevelsOfDetail, WhatIsTouchedIsToldInFullWithinReach) {
 TEST(LevelsOfDetail, WhatRestsIsLookedAtWhereThePlaceMoves) {
   const SharedScene scene = world(140);
   LevelsOfDetail levels(*scene);
-  RigidTruth truth(*scene, {});
+  HeldList held(*scene);
+  RigidTruth truth(*scene, {}, held);
   World of(140, 1);
   for (const std::int64_t tick : {0, 1}) ASSERT_TRUE(truth.read(tick, of.samples, {}));  // now all rests
   std::size_t changed = 0, ticks = 0;

@@ -167,21 +167,28 @@ TEST(Loads, AreAbsentUnlessTheSceneAsks) {
   EXPECT_EQ(state_bytes(*asked) - state_bytes(*plain), 3u * 3 * 12);
 }
 
-TEST(Loads, AreRefusedIfTheyDoNotSuitTheScene) {
+TEST(Loads, AreHeldOrRefusedIfTheyDoNotSuitTheScene) {
   const SharedScene scene = make_scene();
   auto sender = Sender::create(scene).value();
   const std::vector<RigidSample> still(3);
   std::vector<Vec3> nobody(kUsers);
   std::vector<ObjectLoad> loads(3, ObjectLoad{{}, {}, nobody});
-  const auto rule = [&] { return std::string(sender.encode(0, {.objects = still, .loads = loads}).error().rule); };
+  std::int64_t tick = 0;
+  const auto rule = [&] {
+    if (const auto packets = sender.encode(tick++, {.objects = still, .loads = loads}); !packets)
+      return std::string(packets.error().rule);
+    return sender.held().empty() ? std::string() : std::string(sender.held()[0].rule);
+  };
   loads[0].external.x = std::nan("");
   EXPECT_EQ(rule(), "R-API-1");
   loads[0].external.x = 3e6;
   EXPECT_EQ(rule(), "R-API-2");
   loads[0].external.x = 0;
+  EXPECT_EQ(rule(), "");
   nobody[1].z = INFINITY;
   EXPECT_EQ(rule(), "R-API-1");
   nobody[1].z = 0;
+  EXPECT_EQ(rule(), "");
   loads[2].pushes = {};
   EXPECT_EQ(rule(), "R-API-5");
   loads.pop_back();

@@ -272,9 +272,8 @@ TEST(Leaning, RefusedTruthIsForgotten) {
   auto disturbed = Sender::create(eased_scene(), without_heartbeat()).value();
   for (std::int64_t tick = 0; tick < 600; tick += 2) {
     const RigidSample sample = falling(8, tick);
-    RigidSample wrong = sample;
-    wrong.velocity.x = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_FALSE(disturbed.encode(tick, {.objects = {&wrong, 1}}));
+    const RigidSample wrong[2]{{}, sample};
+    EXPECT_FALSE(disturbed.encode(tick, {.objects = wrong}));
     const Packet a = only(undisturbed.encode(tick, {.objects = {&sample, 1}}));
     const Packet b = only(disturbed.encode(tick, {.objects = {&sample, 1}}));
     ASSERT_TRUE(std::ranges::equal(a.bytes, b.bytes)) << tick;

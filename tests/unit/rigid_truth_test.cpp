@@ -221,22 +221,40 @@ TEST(SharedTruth, NarrowerBoundsWakeWhatRestsOutsideThem) {
   EXPECT_EQ(testing::all(sender.encode(10, {.objects = {&body, 1}})).size(), 1u);
 }
 
-TEST(RigidTruth, AfterAnErrorAllCountsAsMoved) {
+/// What is held has moved once, to rest, and once more when it goes on.
+TEST(RigidTruth, WhatIsHeldRestsAndMovesAgain) {
   const SharedScene scene = testing::scene_of(3);
-  RigidTruth truth(*scene, {});
+  HeldList held(*scene);
+  RigidTruth truth(*scene, {}, held);
   std::vector<RigidSample> samples(3);
-  ASSERT_TRUE(truth.read(0, samples, {}));
+  const auto read = [&](std::int64_t tick) {
+    held.begin();
+    ASSERT_TRUE(truth.read(tick, samples, {}));
+    held.end();
+  };
+  samples[2].velocity.x = 1;
+  read(0);
   EXPECT_EQ(truth.moved().size(), 3u) << "nothing was known before";
-  ASSERT_TRUE(truth.read(1, samples, {}));
+  read(1);
   EXPECT_TRUE(truth.moved().empty());
   samples[0].pose.position.x = 0.5;
+  const RigidSample good = samples[2];
   samples[2].pose.position.x = std::nan("");
-  EXPECT_FALSE(truth.read(2, samples, {}));
-  samples[2].pose.position.x = 0;
-  ASSERT_TRUE(truth.read(2, samples, {}));
-  EXPECT_EQ(truth.moved().size(), 3u);
-  EXPECT_EQ(truth.reads(), 3u);
-  EXPECT_NE(truth.state(0).position[0], 0);
+  read(2);
+  EXPECT_EQ(truth.moved().size(), 2u);
+  EXPECT_TRUE(truth.is_held(2) && !truth.is_held(0));
+  EXPECT_EQ(truth.state(2).velocity, Vec3i{});
+  EXPECT_EQ(truth.samples()[2].velocity.x, 0);
+  EXPECT_EQ(truth.samples()[0].pose.position.x, 0.5);
+  read(3);
+  EXPECT_TRUE(truth.moved().empty() && truth.is_held(2));
+  samples[2] = good;
+  read(4);
+  EXPECT_EQ(truth.moved().size(), 1u);
+  EXPECT_FALSE(truth.is_held(2));
+  EXPECT_NE(truth.state(2).velocity, Vec3i{});
+  EXPECT_STREQ(truth.read(5, std::span(samples).first(2), {}).error().rule, "R-API-5");
+  EXPECT_EQ(truth.reads(), 5u);
 }
 
 TEST(AwakeObjects, AreInOrderAndWakeWhenTheirTimeComes) {

@@ -217,6 +217,45 @@ TEST(SceneBuilder, WhatIsWrongWithNoObjectNamesNone) {
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").baselines(0)), "R-STR-9 of ''");
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").baselines(65)), "R-STR-9 of ''");
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").promise({.visual_position = -1}, {})), "R-STR-17 of ''");
+  EXPECT_EQ(refusal(SceneBuilder().rigid("a").promise({.weber_fraction = 4}, {})), "R-API-4 of ''");
+  EXPECT_EQ(refusal(SceneBuilder().rigid("a").promise({.perceptual_share = 4}, {})), "R-API-4 of ''");
+}
+
+/// The grid follows from the size of the world; where that and the bounds do not go together, both figures are told.
+TEST(SceneBuilder, AWorldHasASize) {
+  const auto exponent = [](double metres) { return SceneBuilder().rigid("a").world_size(metres).build().value()->grid.position; };
+  EXPECT_EQ(exponent(1), 22) << "no finer than usual";
+  EXPECT_EQ(exponent(511.9), 22);
+  EXPECT_EQ(exponent(512), 21) << "the last step is below 512 m";
+  EXPECT_EQ(exponent(5000), 18);
+  EXPECT_EQ(exponent(8e6), 8);
+  const SharedScene far = SceneBuilder().rigid("a", {{4999, 0, 0}, {}}).world_size(5000).build().value();
+  EXPECT_EQ(to_pose(far->objects[0].initial, far->grid.position).position.x, 4999);
+  EXPECT_LE(SceneBuilder().rigid("a").world_size(1e5).build().value()->grid.velocity, 14) << "as R-STR-7 asks for";
+  EXPECT_EQ(SceneBuilder().rigid("a").grid({20, 17, 20, 12}).world_size(100).build().value()->grid.position, 20);
+  for (const double metres : {0.0, -1.0, kNan, 1e7})
+    EXPECT_EQ(refusal(SceneBuilder().rigid("a").world_size(metres)), "R-API-4 of ''");
+  const RigidTriggers fine{.visual_position = 1e-4};
+  EXPECT_TRUE(SceneBuilder().rigid("a").promise(fine, {}).world_size(16'000).build());
+  const auto refused = SceneBuilder().rigid("a").promise(fine, {}).world_size(1e5).build();
+  ASSERT_FALSE(refused);
+  EXPECT_STREQ(refused.error().error.rule, "R-API-4");
+  for (const char* part : {"1e+05 m", "0.1 mm", "1.638e+04 m"})
+    EXPECT_NE(refused.error().detail.find(part), std::string::npos) << refused.error().detail;
+  EXPECT_TRUE(SceneBuilder().rigid("a", {}, Dof::none).promise(fine, {}).world_size(1e5).build()) << "nothing moves";
+  const auto away = SceneBuilder().rigid("a", {{600, 0, 0}, {}}).build();
+  EXPECT_NE(away.error().detail.find("512 m"), std::string::npos) << away.error().detail;
+}
+
+TEST(SceneBuilder, HowManyAreTooManyIsTold) {
+  SceneBuilder builder;
+  for (int i = 0; i < 12; ++i) builder.rigid("o" + std::to_string(i));
+  DecodeLimits limits;
+  limits.objects = 10;
+  const auto refused = builder.build(limits);
+  EXPECT_STREQ(refused.error().error.rule, "R-STR-14");
+  EXPECT_EQ(refused.error().detail, "12 objects where 10 are allowed");
+  EXPECT_NE(std::string(remedy(refused.error().error)).find("every receiver"), std::string::npos);
 }
 
 TEST(SceneBuilder, BuildingTakesTheObjects) {

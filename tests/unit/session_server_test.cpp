@@ -415,5 +415,56 @@ TEST(SessionServer, NoForceFromStatesThatTheRateHeldBack) {
   EXPECT_GT(felt, 100);
 }
 
+/// Ten objects at 60 Hz with 20 ms of delay; after 5 s one becomes NaN, then falls out of the world, and comes back: who watches the other nine
+/// sees them within their bounds in every frame, also who joins meanwhile.
+TEST(SessionServer, OneBadObjectDoesNotStopTheOthers) {
+  constexpr std::uint32_t kBodies = 10, kBad = 3;
+  SceneBuilder builder(60);
+  for (std::uint32_t i = 0; i < kBodies; ++i) builder.rigid("o" + std::to_string(i));
+  const SharedScene scene = builder.baselines(64).build().value();
+  SessionServerOptions options;
+  options.sender.triggers.visual_position = 0.005;
+  options.sender.triggers.visual_rotation = 0.03;
+  SessionWorld world(scene, options);
+  world.add({}, {.seed = 1, .delay = 20'000}, {.seed = 2, .delay = 20'000});
+  std::vector<RigidSample> samples(kBodies);
+  const auto place = [](std::uint32_t i, std::int64_t tick) {
+    const double a = (1 + 0.001 * i) * static_cast<double>(tick) / 60;
+    return Vec3{std::sin(a), std::cos(a) + 0.01 * i, 0.1 * i};
+  };
+  const auto is_bad = [](std::int64_t tick) { return tick >= 300 && tick < 900; };
+  std::size_t frames = 0, over = 0, bad_over = 0, named = 0;
+  for (std::int64_t tick = 0; tick < 1200; ++tick) {
+    if (tick == 600) world.add({}, {.seed = 3, .delay = 20'000}, {.seed = 4, .delay = 20'000});
+    world.step([&](std::int64_t now) {
+      for (std::uint32_t i = 0; i < kBodies; ++i) {
+        const double w = 1 + 0.001 * i, a = w * static_cast<double>(now) / 60;
+        samples[i].pose.position = place(i, now);
+        samples[i].velocity = {w * std::cos(a), -w * std::sin(a), 0};
+      }
+      if (is_bad(now)) samples[kBad].pose.position.z = now < 600 ? std::nan("") : -600;
+      return Truth{.objects = samples};
+    });
+    const auto held = world.server->held();
+    if (is_bad(tick) && held.size() == 1 && held[0].index == kBad && held[0].since == 300 && name_of(*scene, held[0]) == "o3")
+      ++named;
+    EXPECT_EQ(held.size(), is_bad(tick) ? 1u : 0u) << tick;
+    for (auto& end : world.ends) {
+      const std::int64_t shown = end.client->shown_tick(world.now);
+      if (shown < 0 || end.client->receiver() == nullptr) continue;
+      for (std::uint32_t i = 0; i < kBodies; ++i) {
+        const Vec3 at = to_pose(end.client->receiver()->replica().pose(i, shown), scene->grid.position).position;
+        const Vec3 wanted = i == kBad && is_bad(shown) ? place(i, 299) : place(i, shown);
+        ++frames;
+        if (norm(at - wanted) > 0.005) ++(i == kBad ? bad_over : over);
+      }
+    }
+  }
+  EXPECT_EQ(named, 600u);
+  EXPECT_GT(frames, 15'000u);
+  EXPECT_EQ(over, 0u);
+  EXPECT_EQ(bad_over, 0u);
+}
+
 }  // namespace
 }  // namespace tactus

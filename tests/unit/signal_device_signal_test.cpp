@@ -188,10 +188,12 @@ TEST(DeviceSignal, WhatIsNotANumberSpoilsNothing) {
     for (std::int64_t tick = 0; tick < 20; ++tick) channel.send(tick, hand(tick));
     DeviceSample wrong = hand(20);
     wrong.position.y = bad;
-    EXPECT_FALSE(channel.sender.encode(20, channel.truth.of(20, wrong, {})));
+    ASSERT_TRUE(channel.sender.encode(20, channel.truth.of(20, wrong, {})));
+    EXPECT_EQ(channel.sender.held().size(), 1u);
     for (std::int64_t tick = 21; tick < 40; ++tick) {
       const DeviceSample right = hand(tick);
-      ASSERT_TRUE(channel.sender.encode(tick, channel.truth.of(tick, right, {}))) << "tick " << tick << " after a wrong one";
+      ASSERT_TRUE(channel.sender.encode(tick, channel.truth.of(tick, right, {})));
+      EXPECT_TRUE(channel.sender.held().empty()) << "tick " << tick << " after a wrong one";
     }
   }
 }

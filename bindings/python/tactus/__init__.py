@@ -14,7 +14,7 @@ rule that was broken. An object is used by one thread at a time; scenes may be s
 """
 from . import _abi
 from ._library import Error
-from .codec import CONTACT, Packet, Player, Receiver, Sender, Shape, StreamWriter
+from .codec import CONTACT, Held, Packet, Player, Receiver, Sender, Shape, StreamWriter
 from .options import DeformableBounds, Limits, ReceiverOptions, RigidBounds, SceneOptions, SenderOptions
 from .figure import plot
 from .run import Comparison, ErrorSummary, MeshErrors, Replica, Stream, compare, decode, encode, read_table
@@ -35,7 +35,7 @@ INTERPOLATION_PLAYOUT = _abi.TACTUS_INTERPOLATION_PLAYOUT
 __all__ = [
     "BASELINE_ACKNOWLEDGED", "BASELINE_PREVIOUS", "CONTACT", "Comparison", "DeformableBounds", "Driven", "Elastic", "Error",
     "ErrorSummary", "Frame", "HAPTIC_CONE", "HAPTIC_FIXED", "HAPTIC_ISOTROPIC", "HAPTIC_OFF", "HAPTIC_PERCEPTUAL",
-    "INTERPOLATION_BLENDING", "INTERPOLATION_HERMITE", "INTERPOLATION_LINEAR", "INTERPOLATION_NONE", "INTERPOLATION_PLAYOUT",
+    "Held", "INTERPOLATION_BLENDING", "INTERPOLATION_HERMITE", "INTERPOLATION_LINEAR", "INTERPOLATION_NONE", "INTERPOLATION_PLAYOUT",
     "Limits", "Mesh", "MeshErrors", "PROFILE_MAIN", "PROFILE_THESIS", "Packet", "Player", "REDUCTION_DEAD_RECKONING",
     "REDUCTION_NONE", "Receiver", "ReceiverOptions", "Replica", "RigidBounds", "RigidObject", "Scene", "SceneOptions", "Sender",
     "SenderOptions", "Shape", "Stream", "StreamWriter", "Trace", "TraceReader", "USER", "build_scene", "compare", "decode", "encode",

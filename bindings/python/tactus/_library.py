@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import operator
+import os
 import pathlib
 from typing import Any
 
@@ -23,11 +24,12 @@ class Error(Exception):
     remedy      a sentence on how to fix it; may be empty
     advice      how a receiver reacts: "none", "drop", "request_key" or "close"
     subject     file or object that it concerns; may be empty
+    detail      figures of this particular case; may be empty
     words       what is wrong in this particular case: file, topic or row, time, value, remedy; may be empty
     """
 
-    def __init__(self, error: Any, subject: str = "", words: str = "") -> None:
-        self._of = (error.status, error.rule, error.bit_offset, subject, words)
+    def __init__(self, error: Any, subject: str = "", words: str = "", detail: str = "") -> None:
+        self._of = (error.status, error.rule, error.bit_offset, subject, words, detail)
         library = core()
         told = ctypes.byref(error)
         self.name: str = library.tactus_status_name(error.status).decode()
@@ -36,20 +38,21 @@ class Error(Exception):
         self.bit_offset: int = error.bit_offset
         self.remedy: str = library.tactus_error_remedy(told).decode()
         self.advice: str = ("none", "drop", "request_key", "close")[library.tactus_error_advice(told)]
-        self.subject, self.words = subject, words
+        self.subject, self.words, self.detail = subject, words, detail
         place = f" at byte {self.bit_offset // 8}" if self.bit_offset else ""
         text = library.tactus_error_text(told).decode()
         subject = f"{subject}: " if subject else ""
-        super().__init__(words or f"{subject}{text}{place} ({self.name}, {self.rule}). {self.remedy}".rstrip())
+        figures = f": {detail}" if detail else ""
+        super().__init__(words or f"{subject}{text}{place} ({self.name}, {self.rule}){figures}. {self.remedy}".rstrip())
 
     def __reduce__(self) -> Any:  # workers of multiprocessing send it to their parent
         return _error_of, self._of
 
 
-def _error_of(status: int, rule: bytes | None, bit_offset: int, subject: str, words: str) -> Error:
+def _error_of(status: int, rule: bytes | None, bit_offset: int, subject: str, words: str, detail: str) -> Error:
     error = _abi.tactus_error()
     error.status, error.rule, error.bit_offset = status, rule, bit_offset
-    return Error(error, subject, words)
+    return Error(error, subject, words, detail)
 
 
 def refusal(rule: str, subject: str, name: str = "TACTUS_INVALID_ARGUMENT") -> Error:
@@ -87,6 +90,13 @@ def text_of(text: bytes) -> bytes:
 def bytes_of(data: Any) -> bytes:
     """Of bytes and whatever else holds some, in one row."""
     return data if isinstance(data, bytes) else bytes(memoryview(data).cast("B"))
+
+
+def path_of(file: str | os.PathLike[Any] | bytes) -> str | None:
+    """The path that is meant; None: these are the bytes of a file. Bytes that name a file are its path, as for open()."""
+    if isinstance(file, (bytearray, memoryview)) or (isinstance(file, bytes) and (len(file) > 4096 or not os.path.isfile(file))):
+        return None
+    return os.fsdecode(file)
 
 
 class _Library:

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import NO_CLOCK, Handle, answer, bytes_of, call, core, handle_of, read_bytes
+from ._library import NO_CLOCK, Handle, answer, bytes_of, call, core, handle_of, path_of, read_bytes
 from .options import ReceiverOptions, SenderOptions
 from .scene import Scene
 
@@ -54,6 +54,29 @@ class Packet:
     def _of(cls, info: Any, data: bytes = b"") -> Packet:
         return cls(data, info.bytes, info.tick, info.number, KINDS[info.kind], bool(info.key), REASONS[info.reason],
                    LAYERS[info.layer], info.updates, info.substream, info.sequence, info.offset)
+
+
+PARTS = ("object", "contact", "shape", "touch", "load")
+
+
+@dataclasses.dataclass(frozen=True)
+class Held:
+    """A part of the truth that breaks a rule. It does not stop the others: what it was before is coded, at rest, until it breaks none.
+
+    part    "object", "contact", "shape", "touch" or "load"
+    index   of the object, or of the contact
+    name    of the object; empty: of a contact
+    since   tick
+    rule    that it breaks, such as "R-API-1"
+    text    what is wrong;  remedy  how to fix it
+    """
+    part: str
+    index: int
+    name: str
+    since: int
+    rule: str
+    text: str
+    remedy: str
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -98,7 +121,7 @@ class Sender(Handle):
         shapes    one per mesh of the scene, or none
         moved     indices of the objects whose row is not that of the tick before: what rests then costs the encoder nothing. None: all rows are
                   compared. An object that moves and is not named is not sent
-        raises    Error
+        raises    Error: a wrong count or tick. One bad row is no error: see held
         """
         states = _array(objects, 13, "objects")
         touched = np.ascontiguousarray(contacts if contacts is not None else np.empty(0, CONTACT), CONTACT)
@@ -119,6 +142,17 @@ class Sender(Handle):
         call(core().tactus_sender_encode, self.handle, tick, truth, ctypes.byref(count))
         del kept
         return [self._packet(i) for i in range(count.value)]
+
+    @property
+    def held(self) -> list[Held]:
+        """Parts of the last tick's truth that break a rule and are held, mostly none."""
+        count = ctypes.c_size_t()
+        status = core().tactus_sender_held(self.handle, None, 0, ctypes.byref(count), None)
+        if status == _abi.TACTUS_OK:
+            return []
+        parts = (_abi.tactus_held * count.value)()
+        call(core().tactus_sender_held, self.handle, ctypes.addressof(parts), len(parts), ctypes.byref(count))
+        return [_held(part) for part in parts]
 
     def _packet(self, index: int) -> Packet:
         info, size = answer(_abi.tactus_packet_info), ctypes.c_size_t()
@@ -147,6 +181,14 @@ class Sender(Handle):
         out = ctypes.c_uint64()
         call(core().tactus_sender_state_hash, self.handle, substream, ctypes.byref(out))
         return out.value
+
+
+def _held(part: Any) -> Held:
+    error = _abi.tactus_error()
+    error.status, error.rule = _abi.TACTUS_INVALID_ARGUMENT, part.rule
+    told = ctypes.byref(error)
+    return Held(PARTS[part.part], part.index, part.name.decode(), part.since, part.rule.decode(),
+                core().tactus_error_text(told).decode(), core().tactus_error_remedy(told).decode())
 
 
 def _fill_shape(form: Any, shape: Shape) -> npt.NDArray[np.float32] | None:
@@ -248,9 +290,9 @@ class Player(Handle, _Shown):
 
     def __init__(self, file: str | os.PathLike[str] | bytes, **options: Any) -> None:
         super().__init__()
-        is_data = isinstance(file, (bytes, bytearray, memoryview))
-        self._subject = "" if is_data else os.fspath(file)
-        self._bytes = bytes_of(file) if is_data else pathlib.Path(file).read_bytes()  # the player reads it in place
+        path = path_of(file)
+        self._subject = path or ""
+        self._bytes = bytes_of(file) if path is None else pathlib.Path(path).read_bytes()  # the player reads it in place
         call(core().tactus_player_open, self._bytes, len(self._bytes), ReceiverOptions(**options), ctypes.byref(self._handle),
              subject=self._subject)
         self._count()

@@ -62,5 +62,5 @@ def plot(trace: Trace | str | os.PathLike[str], stream: str | os.PathLike[str] |
         axes[3].legend(loc="upper right", fontsize="small")
     axes[-1].set_xlabel("time [s]")
     if file is not None:
-        figure.savefig(file)
+        figure.savefig(os.fsdecode(file))
     return figure

@@ -60,13 +60,16 @@ class DeformableBounds(_abi.tactus_deformable_bounds):
 
 class SceneOptions(_abi.tactus_scene_options):
     """tick_rate [1/s], the four ..._exp of the grids, baselines, rigid_profile (PROFILE_MAIN or _THESIS), extrapolation [s], gravity
-    [m/s^2], friction: see tactus_encoder.h."""
+    [m/s^2], friction; world_size [m]: how far from the origin positions get, 512 m without it; limits: a Limits, of the receivers, for
+    more than 4096 objects: see tactus_encoder.h."""
 
-    def __init__(self, **fields: Any) -> None:
+    def __init__(self, limits: Limits | None = None, **fields: Any) -> None:
         super().__init__()
         if "gravity" in fields:
             fields["gravity"] = (ctypes.c_double * 3)(*fields["gravity"])
         _fill(self, _library.core().tactus_scene_options_init, fields)
+        self._kept = limits  # the struct only points to it
+        self.limits = ctypes.addressof(limits) if limits is not None else None
 
 
 class SenderOptions(_abi.tactus_sender_options):

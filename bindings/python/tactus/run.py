@@ -7,6 +7,7 @@ import ctypes
 import dataclasses
 import os
 import pathlib
+import warnings
 from typing import Any
 
 import numpy as np
@@ -23,9 +24,9 @@ from .trace import TraceReader
 class Stream(bytes):
     """The bytes of a stream file."""
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: str | os.PathLike[str] | bytes) -> None:
         """Write the file."""
-        pathlib.Path(path).write_bytes(self)
+        pathlib.Path(os.fsdecode(path)).write_bytes(self)
 
     def decode(self, ticks: npt.ArrayLike | None = None, shapes: bool = False, **options: Any) -> Replica:  # type: ignore[override]
         """As tactus.decode()."""
@@ -43,15 +44,17 @@ class Stream(bytes):
 
 
 def encode(trace: str | os.PathLike[str] | bytes, rigid_bounds: RigidBounds | None = None, deformable_bounds: DeformableBounds | None = None,
-           profile: str = "main", modes: int = 0, clusters: int = 0, **options: Any) -> Stream:
+           profile: str = "main", modes: int = 0, clusters: int = 0, world_size: float = 0, **options: Any) -> Stream:
     """Encode a trace, a path or the bytes of a file, as `tactus encode` does; returns the bytes of a stream file, which declares the bounds.
 
     profile   "main": velocities lean towards the acceleration, and clients ease into updates; "thesis": linear dead reckoning; and the
               profile of meshes
     modes     vibration modes that both ends compute from each mesh, its basis; 0: none
     clusters  of vertices that move alike, of each mesh at most, found on the trace: the basis of bodies that turn and walk; 0: none
+    world_size  [m] how far from the origin positions get, along any axis; 0: 512 m
     options   of the sender: see SenderOptions
     raises    Error
+    warns     RuntimeWarning: an object is held where it was last, as it breaks a rule; once for each
     """
     profiles = {"main": _abi.TACTUS_PROFILE_MAIN, "thesis": _abi.TACTUS_PROFILE_THESIS}
     if profile not in profiles:
@@ -60,12 +63,16 @@ def encode(trace: str | os.PathLike[str] | bytes, rigid_bounds: RigidBounds | No
         raise ValueError("a mesh has one basis: modes or clusters")
     is_reduced = options.get("reduction") != _abi.TACTUS_REDUCTION_NONE  # what goes out at every tick needs no easing
     coding = {"rigid_profile": profiles[profile if is_reduced else "thesis"], "deformable_profile": profiles[profile],
-              "spring_modes": modes, "clusters": clusters}
+              "spring_modes": modes, "clusters": clusters, "world_size": world_size}
     with TraceReader(trace) as reader, reader.scene(rigid_bounds, deformable_bounds, **coding) as scene:
         with Sender(scene, rigid=rigid_bounds, deformable=deformable_bounds, **options) as sender, StreamWriter(scene) as writer:
             for frame in reader:
                 for packet in sender.encode(frame.tick, frame.objects, frame.contacts, frame.shapes):
                     writer.add(packet)
+                for part in sender.held:
+                    if part.since == frame.tick:
+                        warnings.warn(f"{part.name or 'a contact'}, tick {part.since}: {part.text} ({part.rule}): held where it was last. "
+                                      f"{part.remedy}", RuntimeWarning, stacklevel=2)
             return Stream(writer.finish())
 
 
@@ -234,7 +241,7 @@ def compare(trace: str | os.PathLike[str] | bytes, stream: str | os.PathLike[str
             return Comparison(*series, found[_abi.TACTUS_ERROR_FORCE].worst_ratio, [errors.mesh(i) for i in range(len(truth.meshes))])
 
 
-def read_table(path: str | os.PathLike[str]) -> dict[str, npt.NDArray[Any]]:
+def read_table(path: str | os.PathLike[str] | bytes) -> dict[str, npt.NDArray[Any]]:
     """A table that `tactus sweep` or `tactus bench` wrote (points.csv), by columns.
 
     Columns of numbers become float64, with shares such as "2.5%" as fractions (0.025) and empty cells as NaN; others stay text.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import dataclasses
-from typing import Sequence
+from typing import Any, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -270,12 +270,13 @@ class _Builder(Handle):
     def build(self) -> Scene:
         scene, error = Scene(), _abi.tactus_error()
         if core().tactus_scene_builder_build(self.handle, ctypes.byref(scene._handle), error):
-            raise Error(error, core().tactus_scene_builder_culprit(self.handle).decode())
+            raise Error(error, core().tactus_scene_builder_culprit(self.handle).decode(),
+                        detail=core().tactus_scene_builder_detail(self.handle).decode())
         return scene
 
 
 def build_scene(objects: Sequence[RigidObject] = (), meshes: Sequence[Mesh] = (), rigid_bounds: RigidBounds | None = None,
-                deformable_bounds: DeformableBounds | None = None, **options: float) -> Scene:
+                deformable_bounds: DeformableBounds | None = None, **options: Any) -> Scene:
     """Make a scene.
 
     rigid_bounds, deformable_bounds   that the sender will keep: given either, the scene declares both. Give the sender the same

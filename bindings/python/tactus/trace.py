@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import Error, Handle, answer, bytes_of, call, read_bytes, text_of, traces
+from ._library import Error, Handle, answer, bytes_of, call, path_of, read_bytes, text_of, traces
 from .arrays import write_arrays
 from .codec import Shape
 from .options import DeformableBounds, RigidBounds
@@ -59,13 +59,14 @@ class TraceReader(Handle):
 
     def __init__(self, file: str | os.PathLike[str] | bytes) -> None:
         super().__init__()
-        if isinstance(file, (bytes, bytearray, memoryview)):
+        path = path_of(file)
+        if path is None:
             self._subject, self._bytes = "", bytes_of(file)  # the trace reads them in place
             call(traces().tactus_trace_open_memory, self._bytes, len(self._bytes), ctypes.byref(self._handle),
                  words=traces().tactus_trace_error_words)
         else:
-            self._subject = os.fspath(file)
-            call(traces().tactus_trace_open, text_of(os.fsencode(file)), ctypes.byref(self._handle), subject=self._subject,
+            self._subject = path
+            call(traces().tactus_trace_open, text_of(os.fsencode(path)), ctypes.byref(self._handle), subject=self._subject,
                  words=traces().tactus_trace_error_words)
         info = answer(_abi.tactus_trace_info)
         call(traces().tactus_trace_get, self.handle, info)
@@ -97,16 +98,17 @@ class TraceReader(Handle):
         call(traces().tactus_trace_get_triangles, self.handle, index, triangles.ctypes.data, triangles.size)
         return Mesh(info.name.decode(), rest, triangles, info.period)
 
-    def scene(self, rigid_bounds: RigidBounds | None = None, deformable_bounds: DeformableBounds | None = None, **coding: int) -> Scene:
+    def scene(self, rigid_bounds: RigidBounds | None = None, deformable_bounds: DeformableBounds | None = None, **coding: float) -> Scene:
         """The scene of the trace, before the first frame is read.
 
         rigid_bounds, deformable_bounds   that the scene declares
-        coding                            rigid_profile and deformable_profile (PROFILE_MAIN or _THESIS), baselines, spring_modes, clusters
+        coding                            rigid_profile and deformable_profile (PROFILE_MAIN or _THESIS), baselines, spring_modes, clusters,
+                                          world_size [m]
         """
         options = _abi.tactus_trace_coding()
         traces().tactus_trace_coding_init(options, ctypes.sizeof(options))
         for name, value in coding.items():
-            if name not in ("rigid_profile", "deformable_profile", "baselines", "spring_modes", "clusters"):
+            if name not in ("rigid_profile", "deformable_profile", "baselines", "spring_modes", "clusters", "world_size"):
                 raise TypeError(f"scene() has no argument {name!r}")
             setattr(options, name, value)
         rigid, deformable = rigid_bounds or RigidBounds(), deformable_bounds or DeformableBounds()
@@ -188,14 +190,14 @@ class Trace:
         data, notes = write_arrays(time, poses, wrenches, devices, contacts, order, time_unit, tick_rate, gap, source)
         return dataclasses.replace(read_trace(data), notes=notes)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: str | os.PathLike[str] | bytes) -> None:
         """Write a trace file (MCAP).   raises  Error"""
         with _Writer(path, self) as writer:
             try:
                 writer.write(self)
             except Error:
                 writer.close()
-                pathlib.Path(path).unlink(missing_ok=True)
+                pathlib.Path(os.fsdecode(path)).unlink(missing_ok=True)
                 raise
 
     def to_bytes(self) -> bytes:
@@ -255,9 +257,9 @@ class _Writer(Handle):
     _destroy = "tactus_trace_writer_destroy"
     _library = staticmethod(traces)
 
-    def __init__(self, path: str | os.PathLike[str], of: Trace) -> None:
+    def __init__(self, path: str | os.PathLike[str] | bytes, of: Trace) -> None:
         super().__init__()
-        self._subject = os.fspath(path)
+        self._subject = os.fsdecode(path)
         library = traces()
         call(library.tactus_trace_writer_create, text_of(os.fsencode(path)), of.tick_rate, text_of(of.source.encode()), ctypes.byref(self._handle))
         for name, dof in zip(of.object_names, of.dofs or [63] * len(of.object_names)):
