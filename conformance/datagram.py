@@ -18,7 +18,7 @@ REPORT = PIECE                                              # up
 PACE, SEAT, BASELINES = BUTTONS, STATE, HASH                # down
 ACKNOWLEDGED = 1                                            # the last policy of baselines
 LARGEST_DATAGRAM = 1200
-BYE, WRONG_VERSION, FULL, TOO_LARGE, SILENCE, NO_SCENE, LAST_REASON = 0, 1, 2, 3, 4, 5, 6
+BYE, WRONG_VERSION, FULL, TOO_LARGE, SILENCE, NO_SCENE, PROTOCOL = range(7)   # reasons
 NO_TIMING, END_OF_TIME = 65535, 1 << 53
 END_OF_TICKS, FARTHEST_PACE = 1 << 32, 1 << 33
 
@@ -88,7 +88,7 @@ def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
 
 def reason_of(e: Cursor) -> int:
     reason = e.number(1, CUT)
-    require(reason <= LAST_REASON and e.left() == 0, *SPARE)
+    require(reason <= PROTOCOL and e.left() == 0, *SPARE)
     return reason
 
 

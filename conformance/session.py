@@ -23,6 +23,7 @@ ASKS_BACK = {UP: (BUTTONS, STATE), DOWN: (PIECE, PACE, SEAT)}   # an acknowledge
 MOST_UNTOLD = 32                                            # numbers that are accepted until an acknowledgement is due at once
 PIECE_SIZE, WINDOW, WINDOW_PER_PIECE, LARGEST_WINDOW = 1024, 64, 16, 1024
 FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 4
+REMEMBERED = 1024                                           # own numbers
 MS = 1000                                                   # us
 MOST_SILENCE, MOST_JOINING, FIRST_ANSWER = 120_000 * MS, 10_000 * MS, 250 * MS
 STATE_LIMIT, HEADER_LIMIT = 1 << 28, 1 << 20                # bytes
@@ -84,13 +85,15 @@ class Epoch:
         self.untold = 0                                     # accepted since the last acknowledgement
         self.next, self.acknowledged = 1, 0                 # own numbers
         self.sent_at: dict[int, int] = {}
+        self.arrived: set[int] = set()                      # own numbers that were acknowledged
         self.asked, self.progress_at = 0, 0                 # own number; when one was acknowledged, or the first asked
         self.asked_at = self.last_sent = 0                  # when one that asks went, and any
         self.round_trip: Optional[tuple[int, int]] = None   # smoothed, variation
         self.largest = 0                                    # packet; 0: there is no scene yet
         self.fragments: dict[tuple, dict] = {}
         self.hash: Optional[bytes] = None
-        self.packets, self.packet_at = 0, -10 ** 9          # decoded; when the last was
+        self.packets = self.shapes = 0                      # decoded; of deformable objects
+        self.packet_at = -10 ** 9                           # when the last was
         self.policy = PREVIOUS
         self.held: dict[int, tuple[int, bytes]] = {}        # packets of rigid objects that miss their baseline: when they came
         self.path: Optional[DevicePath] = None              # of the device, where it moves objects
@@ -105,7 +108,7 @@ class Epoch:
         """A numbered datagram whose check holds."""
         body = datagram[:-4]
         form, value = body[0] & 3, struct.unpack("<H", body[:2])[0] >> 2
-        decoded = self.packets
+        decoded, shapes = self.packets, self.shapes
         parts = [(PACKET_PART, (0, body[2:]))] if form == PACKET else list(read_parts(body, 1 - self.direction))
         number = self.extend(value)
         self.received.add(number)
@@ -118,18 +121,14 @@ class Epoch:
         if self.packets > decoded:
             self.packet_at = now
         if complete:
-            self.accept(now, number, parts)
+            self.accept(now, number, parts, self.shapes > shapes)
 
     def take_part(self, now: int, number: int, kind: int, elements: tuple) -> bool:
         if kind == ACK:
             newest, held, _ = elements
             back = (self.next - 1 - newest) % (1 << 16)
             require(back < 4096 and back < self.next - 1, "invalid", "R-SES-6")
-            if self.next - 1 - back > self.acknowledged:
-                self.acknowledged, self.progress_at = self.next - 1 - back, now
-                if held != NO_TIMING:
-                    self.measure(max(0, now - self.sent_at[self.acknowledged] - 16 * held))
-            self.take_acknowledged(newest, elements[2])
+            self.take_acknowledged(now, self.next - 1 - back, held, elements[2])
         elif kind == PIECE and self.direction == UP:
             self.take_piece(*elements)
         elif kind == FRAGMENT:
@@ -155,11 +154,17 @@ class Epoch:
     def answer(self) -> int:
         return self.round_trip[0] + 4 * self.round_trip[1] + 25 * MS if self.round_trip else FIRST_ANSWER
 
-    def take_acknowledged(self, newest: int, missing: int) -> None:
-        """Of the client: which packets of its device act."""
-        if self.path:
-            number = self.next - 1 - (self.next - 1 - newest) % (1 << 16)
-            self.path.acknowledge({number} | {number - 1 - i for i in range(64) if not missing >> i & 1})
+    def take_acknowledged(self, now: int, newest: int, held: int, missing: int) -> None:
+        """An acknowledgement of own numbers."""
+        if held != NO_TIMING and newest not in self.arrived and newest > self.next - 1 - REMEMBERED:
+            self.measure(max(0, now - self.sent_at[newest] - 16 * held))
+        numbers = {newest} | {newest - 1 - i for i in range(64) if not missing >> i & 1 and newest - 1 - i > 0}
+        if any(n not in self.arrived and n > self.next - 1 - REMEMBERED for n in numbers):
+            self.progress_at = now
+        self.arrived |= numbers
+        self.acknowledged = max(self.acknowledged, newest)
+        if self.direction == UP and self.path:              # which packets of the device act
+            self.path.acknowledge(numbers)
 
     def take_pace(self, begin: int, offset: int) -> None:
         if self.path:
@@ -233,6 +238,7 @@ class Epoch:
         except StreamError as error:
             return self.hold(now, number, packet, error)
         self.packets += 1
+        self.shapes += isinstance(decoder, DeformableDecoder)
         if number % 64 == 0 and number == decoder.receiver.newest and getattr(decoded, "layer", 2) == 2:
             self.hash = struct.pack("<BHI", substream, number % (1 << 16), decoder.state_hash() % (1 << 32))
         if isinstance(decoder, RigidDecoder):
@@ -259,18 +265,15 @@ class Epoch:
         is_stuck = any(now > at + max(500 * MS, 4 * self.answer()) for at, _ in self.held.values())
         return part(REPORT, varint(0) + bytes([is_stuck]))
 
-    def accept(self, now: int, number: int, parts: list[tuple]) -> None:
+    def accept(self, now: int, number: int, parts: list[tuple], urgent: bool) -> None:
         self.accepted[number] = now
         self.untold += 1
-        if self.ack_due is None and any(kind not in (ACK, CLOCK) for kind, _ in parts):
-            self.ack_due = now + self.patience
-        if self.ack_due is not None and (self.untold >= MOST_UNTOLD or any(self.is_urgent(*p) for p in parts)):
-            self.ack_due = min(self.ack_due, now)
-
-    def is_urgent(self, kind: int, elements: tuple) -> bool:
-        if kind != PACKET_PART:
-            return kind == STATE
-        return isinstance(self.decoders.substreams[self.decoders.split(elements[1])[0]], DeformableDecoder)
+        full = self.untold >= MOST_UNTOLD
+        if not full and all(kind in (ACK, CLOCK) or kind > PACKET_PART for kind, _ in parts):
+            return
+        urgent = full or urgent or any(kind == STATE for kind, _ in parts)
+        due = now if urgent else now + self.patience
+        self.ack_due = due if self.ack_due is None else min(self.ack_due, due)
 
     def acknowledgement(self, now: int) -> bytes:
         newest = max(self.accepted)

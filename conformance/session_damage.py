@@ -111,11 +111,23 @@ def said_by_program(direction: int, lines: list[dict], rng: random.Random) -> di
     return {"closes": rng.randrange(lines[0]["clients"]), "reason": rng.randrange(7)} if kind == 1 else {"waits": 1}
 
 
+def burst(direction: int, epochs: list[int], rng: random.Random) -> list[dict]:
+    """As many datagrams of one kind, with rising numbers, as make an acknowledgement due, or break rules too often."""
+    said = rng.choice([part(64, b""), part(1, b"\xff\xff\0\0\0"), part(2, b"\0"), part(5, b"\0"), part(9, b"")])
+    first, epoch = rng.randrange(1, 200), rng.choice(epochs)
+    address = {} if direction == DOWN else {"from": 1}
+    return [{**address, "heard": sealed(head(PARTS, first + i) + said, epoch, direction).hex()} for i in range(rng.choice([33, 70, 110]))]
+
+
 def damage(lines: list[dict], others: list[list[dict]], direction: int, rng: random.Random) -> None:
     epochs = known_epochs(lines)
     at = rng.randrange(1, len(lines) + 1)
     here = lines[min(at, len(lines) - 1)]
-    kind = rng.randrange(9)
+    kind = rng.randrange(28)
+    if kind == 27:
+        lines[at:at] = burst(direction, epochs, rng)
+        return
+    kind //= 3
     if kind == 0 and at < len(lines):
         del lines[at]
     elif kind == 1 and len(lines) > 1:

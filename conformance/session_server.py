@@ -7,8 +7,8 @@ import struct
 from typing import Iterator, Optional
 
 from conventions import Cursor, StreamError, fnv1a, require
-from datagram import (ACK, BUTTONS, BYE, CUT, DOWN, FULL, HANDSHAKE, JOIN, LEAVE, PACE, PARTS, PIECE, REFUSAL, SILENCE, SPARE, STATE,
-                      TOO_LARGE, UP, WELCOME, WRONG_VERSION, head, is_of_epoch, part, reason_of, sealed, varint)
+from datagram import (ACK, BUTTONS, BYE, CUT, DOWN, FULL, HANDSHAKE, JOIN, LEAVE, PACE, PACKET, PARTS, PIECE, PROTOCOL, REFUSAL, SILENCE,
+                      SPARE, STATE, TOO_LARGE, UP, WELCOME, WRONG_VERSION, head, is_of_epoch, part, reason_of, sealed, varint)
 from decoder import SceneDecoder
 from device_path import DevicePath, device_scene
 from scene import Declaration, read_declaration, state_bytes
@@ -17,6 +17,7 @@ from session import FIRST_ANSWER, MS, PIECE_SIZE, WINDOW, Epoch
 
 LEAST_JOIN = 80                                             # bytes
 WELCOME_EVERY, UNPROVEN, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
+MOST_FAULTS = 100                                           # datagrams
 ROLES = "observer", "participant"
 
 
@@ -32,20 +33,19 @@ class ServedEpoch(Epoch):
         self.participates = participates
         self.carries: dict[int, int] = {}                   # piece in each datagram
         self.on_their_way: set[int] = set()
-        self.arrived: set[int] = set()
+        self.pieces_there: set[int] = set()
         self.open: set[int] = set()                         # own numbers whose fate is not known
         self.timeouts = 0                                   # of pieces, since the last that arrived
         self.device_packets = 0
 
-    def take_acknowledged(self, newest: int, missing: int) -> None:
-        number = self.next - 1 - (self.next - 1 - newest) % (1 << 16)
-        for n in {number} | {number - 1 - i for i in range(64) if not missing >> i & 1}:
-            self.open.discard(n)
-            if n in self.carries:
-                index = self.carries.pop(n)
-                self.arrived.add(index)
-                self.on_their_way.discard(index)
-                self.timeouts = 0
+    def take_acknowledged(self, now: int, newest: int, held: int, missing: int) -> None:
+        super().take_acknowledged(now, newest, held, missing)
+        for number in self.arrived & set(self.carries):
+            index = self.carries.pop(number)
+            self.pieces_there.add(index)
+            self.on_their_way.discard(index)
+            self.timeouts = 0
+        self.open -= self.arrived
 
     def answer(self) -> int:
         return self.round_trip[0] + 4 * self.round_trip[1] + 10 * MS if self.round_trip else FIRST_ANSWER
@@ -98,9 +98,9 @@ class ServedEpoch(Epoch):
 
     def poll(self, now: int) -> Iterator[bytes]:
         self.lose_pieces(now)
-        first = next((i for i in range(len(self.offered)) if i not in self.arrived), len(self.offered))
+        first = next((i for i in range(len(self.offered)) if i not in self.pieces_there), len(self.offered))
         for index in range(first, min(first + WINDOW, len(self.offered))):
-            if index not in self.arrived | self.on_their_way and not self.live:
+            if index not in self.pieces_there | self.on_their_way and not self.live:
                 self.on_their_way.add(index)
                 self.carries[self.next] = index
                 yield self.write(now, [part(PIECE, varint(index) + self.offered[index])])
@@ -113,6 +113,7 @@ class Connection:
     def __init__(self, peer: int, client: int, role: int, nonce: int, limits: tuple[int, int]):
         self.peer, self.client, self.role, self.nonce, self.limits = peer, client, role, nonce, limits
         self.proven = self.repeats_welcome = self.outdated = False
+        self.faults = 0                                     # datagrams that broke a rule
         self.epoch: ServedEpoch
         self.token = 0                                      # the first epoch
         self.serial = self.welcome_at = 0
@@ -184,15 +185,22 @@ class Server:
             require(value == JOIN, "invalid", "R-SES-2")
             self.join(now, peer, c, Cursor(datagram, 2, len(datagram) - 4))
             return
-        if form == HANDSHAKE or form > 2:
+        try:
+            self.handle_own(now, c, datagram, form, value)
+        except StreamError as error:
+            c.faults += error.rule not in ("R-SES-4", "R-SES-6")
+            if c.faults == MOST_FAULTS:
+                self.end(c, PROTOCOL, says=True)
+            raise
+
+    def handle_own(self, now: int, c: Connection, datagram: bytes, form: int, value: int) -> None:
+        """A datagram of the epoch of this session."""
+        if form == HANDSHAKE or form > PACKET:
             require(form == HANDSHAKE and value == LEAVE, "invalid", "R-SES-2")
             reason = reason_of(Cursor(datagram, 2, len(datagram) - 4))
             c.proven = True
             self.end(c, reason, says=False)
             return
-        self.take(now, c, datagram)
-
-    def take(self, now: int, c: Connection, datagram: bytes) -> None:
         try:
             c.epoch.take(now, datagram)
         except StreamError as error:
