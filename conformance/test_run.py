@@ -37,7 +37,7 @@ VALID = with_crc(b"\x89TCT" + struct.pack("<BBHI", 1, 0, 0, len(BODY)) + BODY)
 HEADER_LINE = ('{"header":{"version":1,"profile":0,"tick_rate":1000,"grid":[22,17,19,12],"max_extrapolation":2000,'
                '"baseline_span":1,"objects":[]}}\n')
 VALID_REPLY = HEADER_LINE + '{"end":{"complete":false,"packets":0,"state":"cbf29ce484222325"}}\n'
-WITH_FLAG = VALID[:6] + b"\x40" + VALID[7:]
+WITH_FLAG = VALID[:7] + b"\x80" + VALID[8:]  # the last that would get a meaning
 WITH_UNKNOWN_RECORD = VALID + with_crc(b"\x04\x00")
 
 
