@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compare a decoder, the testee, with decoder.py on damaged vectors (README.md).
+"""Compare a decoder, the testee, with decoder.py on damaged vectors, or both ends of a session with session.py (README.md).
 
 Damage is seeded: the same seed and number give the same file. Check values are mended after most of it, so that it reaches the code
 behind them. Exit status: 0 no difference, 1 a difference, 2 wrong use. Python's standard library only; POSIX.
@@ -17,9 +17,11 @@ from pathlib import Path
 from typing import Optional
 
 import decoder
+import session
 from conventions import StreamError
 from file import File
 from run import Crash, load_cases, run_testee
+from session_damage import Scripts, make_script
 
 FIXED = 12                                                  # bytes of the declaration before its body
 LATEST_TICK = 5000                                          # a client looks at every tick up to the last packet's
@@ -149,10 +151,10 @@ def expected(data: bytes, mode: Optional[str]) -> tuple[int, list[str]]:
     return 0, lines
 
 
-def difference(command: list[str], data: bytes, mode: Optional[str], wanted: tuple[int, list[str]]) -> str:
+def difference(command: list[str], data: bytes, wanted: tuple[int, list[str]]) -> str:
     """What the testee says that decoder.py does not; empty if they agree."""
     try:
-        got = run_testee(command + (["--replica", mode] if mode else []), data)
+        got = run_testee(command, data)
     except Crash as crash:
         return f"crash: {crash}"
     if got == wanted:
@@ -172,7 +174,7 @@ def compare(options: argparse.Namespace, vectors: Vectors) -> int:
         accepted += wanted[0] == 0
         if wanted[0] == 1:
             rules.add(json.loads(wanted[1][-1])["error"]["rule"])
-        said = difference(command, data, mode, wanted)
+        said = difference(command + (["--replica", mode] if mode else []), data, wanted)
         if said:
             differences += 1
             print(f"case {number} of seed {options.seed}: {said}")
@@ -182,8 +184,31 @@ def compare(options: argparse.Namespace, vectors: Vectors) -> int:
     return 1 if differences else 0
 
 
+def compare_sessions(options: argparse.Namespace, scripts: Scripts) -> int:
+    command = shlex.split(options.testee) + ["--session"]
+    rules, differences = set(), 0
+    for number in range(options.first, options.first + options.cases):
+        text = make_script(scripts, options.seed, number)
+        try:
+            lines = list(session.lines(text))
+        except Exception as error:                          # a defect of session.py, not of the script
+            said = f"session.py: {error!r}"
+            lines = []
+        else:
+            said = difference(command, text.encode("ascii"), (0, [json.dumps(line, separators=(",", ":")) for line in lines]))
+        rules |= {line["error"]["rule"] for line in lines if "error" in line}
+        if said:
+            differences += 1
+            print(f"script {number} of seed {options.seed}: {said}")
+            if options.keep:
+                (Path(options.keep) / f"{options.seed}-{number}.script").write_text(text, encoding="ascii")
+    print(f"{options.cases} scripts, {len(rules)} rules broken, {differences} differences")
+    return 1 if differences else 0
+
+
 def main(arguments: list[str], root: Path) -> int:
     parser = argparse.ArgumentParser(description="Compare a decoder with decoder.py on damaged vectors.")
+    parser.add_argument("--sessions", action="store_true", help="damaged scripts of sessions instead, for both ends")
     parser.add_argument("--testee", metavar="CMD", required=True, help="command line of the decoder")
     parser.add_argument("--cases", type=int, default=1000, help="how many files (default: 1000)")
     parser.add_argument("--first", type=int, default=0, help="number of the first one (default: 0)")
@@ -191,6 +216,8 @@ def main(arguments: list[str], root: Path) -> int:
     parser.add_argument("--keep", metavar="DIR", help="write files with differences there")
     options = parser.parse_args(arguments)
     try:
+        if options.sessions:
+            return compare_sessions(options, Scripts(root))
         vectors = Vectors(root)
         if not vectors.valid or options.cases < 1:
             raise ValueError("no vectors or no cases")

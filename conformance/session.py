@@ -1,125 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 70 of the specification: datagrams, epochs and the client's end, as functions of datagrams and time. No socket, no clock."""
+"""Chapter 70 of the specification: epochs and the client's end, as functions of datagrams and time. No socket, no clock."""
 from __future__ import annotations
 
 import json
 import struct
-import zlib
 from typing import Callable, Iterator, Optional
 
 from conventions import Cursor, StreamError, fnv1a, require
+from datagram import (UP, DOWN, HANDSHAKE, PARTS, PACKET, JOIN, WELCOME, REFUSAL, LEAVE, ACK, CLOCK, BUTTONS, PIECE, STATE, HASH, FRAGMENT,
+                      PACKET_PART, REPORT, PACE, SEAT, BASELINES, BYE, TOO_LARGE, SILENCE, NO_SCENE, NO_TIMING, END_OF_TIME, CUT, SPARE,
+                      sealed, is_of_epoch, head, varint, part, reason_of, read_parts)
 from decoder import SceneDecoder
 from deformable_decoder import DeformableDecoder
-from deformable_header import zigzag
 from device_path import DevicePath, device_scene
 from packet import Receiver
 from rigid import RigidDecoder
-from scene import Declaration, read_declaration
+from scene import THESIS, Declaration, read_declaration
 
-UP, DOWN = 0, 1
-HANDSHAKE, PARTS, PACKET = range(3)                         # forms
-JOIN, WELCOME, REFUSAL, LEAVE = range(4)                    # kinds of handshakes
-ACK, CLOCK, BUTTONS, PIECE, STATE, HASH, FRAGMENT, PACKET_PART = range(1, 9)
-REPORT = PIECE                                              # up
-PACE, SEAT, BASELINES = BUTTONS, STATE, HASH                # down
-PREVIOUS, ACKNOWLEDGED = 0, 1                               # policies of baselines
-MOST_HELD, BYTES_HELD = 1024, 1 << 16
-LARGEST_DATAGRAM = 1200
+PREVIOUS = 0                                                # policies of baselines
+MOST_HELD, BYTES_HELD, LONGEST_HELD = 1024, 1 << 16, 2_000_000
+ASKS_BACK = {UP: (BUTTONS, STATE), DOWN: (PIECE, PACE, SEAT)}   # an acknowledgement rides on these, due or not
 MOST_UNTOLD = 32                                            # numbers that are accepted until an acknowledgement is due at once
 PIECE_SIZE, WINDOW, WINDOW_PER_PIECE, LARGEST_WINDOW = 1024, 64, 16, 1024
 FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 4
+REMEMBERED = 1024                                           # own numbers
 MS = 1000                                                   # us
-BYE, WRONG_VERSION, FULL, TOO_LARGE, SILENCE, NO_SCENE, LAST_REASON = 0, 1, 2, 3, 4, 5, 6
+MOST_SILENCE, MOST_JOINING, FIRST_ANSWER = 120_000 * MS, 10_000 * MS, 250 * MS
 STATE_LIMIT, HEADER_LIMIT = 1 << 28, 1 << 20                # bytes
-NO_TIMING, END_OF_TIME = 65535, 1 << 53
-END_OF_TICKS, FARTHEST_PACE = 1 << 32, 1 << 33
-
-CUT, SPARE = ("truncated", "R-SES-3"), ("malformed", "R-SES-3")
-
-
-# ---- Section 2: datagrams -------------------------------------------------------------------------------------------
-def check_of(body: bytes, epoch: int, direction: int) -> int:
-    return zlib.crc32(struct.pack("<QB", epoch, direction) + body)
-
-
-def sealed(body: bytes, epoch: int, direction: int = UP) -> bytes:
-    return body + struct.pack("<I", check_of(body, epoch, direction))
-
-
-def is_of_epoch(datagram: bytes, epoch: int, direction: int = DOWN) -> bool:
-    return 6 <= len(datagram) <= LARGEST_DATAGRAM and \
-        struct.unpack("<I", datagram[-4:])[0] == check_of(datagram[:-4], epoch, direction)
-
-
-def head(form: int, value: int) -> bytes:
-    return struct.pack("<H", form + 4 * value)
-
-
-def varint(v: int) -> bytes:
-    out = b""
-    while v >= 0x80:
-        out += bytes([v & 0x7F | 0x80])
-        v >>= 7
-    return out + bytes([v])
-
-
-def part(kind: int, data: bytes) -> bytes:
-    return bytes([kind]) + varint(len(data)) + data
-
-
-COMES = {UP: (ACK, BUTTONS, REPORT, STATE, HASH, FRAGMENT, PACKET_PART),
-         DOWN: (ACK, CLOCK, PACE, PIECE, SEAT, BASELINES, FRAGMENT, PACKET_PART)}
-
-
-def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
-    if kind == ACK:
-        out = e.number(2, CUT), e.number(2, CUT), e.varint(CUT, SPARE)
-    elif kind == CLOCK:
-        out = (e.varint(CUT, SPARE),)
-    elif kind == PACE and direction == DOWN:
-        out = e.varint(CUT, SPARE), zigzag(e.varint(CUT, SPARE))
-        require(out[0] < END_OF_TICKS and abs(out[1]) <= FARTHEST_PACE, *SPARE)
-    elif kind == BUTTONS:
-        out = e.number(4, CUT), e.number(4, CUT)
-    elif kind == BASELINES and direction == DOWN:
-        out = (e.number(1, CUT),)
-        require(out[0] <= ACKNOWLEDGED, *SPARE)
-    elif kind == STATE:                                     # and seat
-        out = (e.number(1, CUT),)
-    elif kind == REPORT and direction == UP:
-        out = e.varint(CUT, SPARE), e.number(1, CUT)
-        require(out[1] <= 3, *SPARE)
-        if out[1] & 2:
-            out += tuple(e.number(4, CUT) for _ in range(3))      # the place, as unsigned numbers: nobody looks here
-    elif kind == HASH:
-        out = e.number(1, CUT), e.number(2, CUT), e.number(4, CUT)
-    else:
-        out = tuple(e.varint(CUT, SPARE) for _ in range(4 if kind == FRAGMENT else 1)) + (e.take(e.left(), CUT),)
-    require(e.left() == 0 and (kind != STATE or direction == DOWN or out[0] <= 1) and (kind != CLOCK or out[0] < END_OF_TIME), *SPARE)
-    return out
-
-
-def reason_of(e: Cursor) -> int:
-    reason = e.number(1, CUT)
-    require(reason <= LAST_REASON and e.left() == 0, *SPARE)
-    return reason
-
-
-def read_parts(body: bytes, direction: int) -> Iterator[tuple[int, tuple]]:
-    """Type and elements of each part of a datagram."""
-    cursor, last, count = Cursor(body, 2, len(body)), 0, 0
-    while cursor.left():
-        kind = cursor.number(1, CUT)
-        size = cursor.varint(CUT, SPARE)
-        data = cursor.take(size, CUT)
-        require(last <= kind and kind > 0, "malformed", "R-SES-5")
-        require(kind in COMES[direction] or kind >= 64, "malformed", "R-SES-5")
-        require(kind >= 64 or last < FRAGMENT or last == kind == PACKET_PART, "malformed", "R-SES-5")
-        last, count = kind, count + 1
-        if kind < 64:
-            yield kind, elements_of(kind, direction, Cursor(data, 0, len(data)))
-    alone = count == 1 and last == PACKET_PART and data[:1] == b"\0"
-    require(count > 0 and not alone, "malformed", "R-SES-5")
 
 
 # ---- 25, section 9: packets with given numbers ----------------------------------------------------------------------
@@ -146,6 +53,21 @@ def decode_numbered(decoder, number: int, packet: bytes):
     return decoder.decode(b"\0\0" + packet)                 # in place of the sequence
 
 
+def trunc(a: int, b: int) -> int:
+    """a / b, rounded toward 0."""
+    return a // b if a >= 0 else -(-a // b)
+
+
+def largest_packet(scene: Declaration) -> int:
+    """Section 5: bytes that a packet of this scene may have, the number of its substream among them."""
+    moving, users = len(scene.moving()), scene.loads.users if scene.loads else 0
+    most = [(64 + (296 if scene.driven else 208) * moving) if moving else 0, 64 + (112 + 48 * users) * moving if scene.loads else 0]
+    for item in scene.deformables:
+        most.append(96 + (17 + 6 * item.quant_bits) * len(item.rest) if item.profile == THESIS else
+                    112 + 16 * item.mode_count + 40 * len(item.rest))
+    return 1 + max(most)
+
+
 # ---- Sections 4 to 6: one end of an epoch ---------------------------------------------------------------------------
 class Epoch:
     direction, patience = UP, 10 * MS                       # of what it sends; until an acknowledgement is due
@@ -157,16 +79,21 @@ class Epoch:
         self.scene: Optional[Declaration] = None
         self.decoders: Optional[SceneDecoder] = None
         self.newest, self.received = 0, set()               # numbers of datagrams, down
+        self.heard_at = 0                                   # when the newest came
         self.accepted: dict[int, int] = {}                  # when each came
         self.ack_due: Optional[int] = None
         self.untold = 0                                     # accepted since the last acknowledgement
         self.next, self.acknowledged = 1, 0                 # own numbers
         self.sent_at: dict[int, int] = {}
+        self.arrived: set[int] = set()                      # own numbers that were acknowledged
         self.asked, self.progress_at = 0, 0                 # own number; when one was acknowledged, or the first asked
-        self.round_trip: Optional[int] = None
+        self.asked_at = self.last_sent = 0                  # when one that asks went, and any
+        self.round_trip: Optional[tuple[int, int]] = None   # smoothed, variation
+        self.largest = 0                                    # packet; 0: there is no scene yet
         self.fragments: dict[tuple, dict] = {}
         self.hash: Optional[bytes] = None
-        self.packets = 0
+        self.packets = self.shapes = 0                      # decoded; of deformable objects
+        self.packet_at = -10 ** 9                           # when the last was
         self.policy = PREVIOUS
         self.held: dict[int, tuple[int, bytes]] = {}        # packets of rigid objects that miss their baseline: when they came
         self.path: Optional[DevicePath] = None              # of the device, where it moves objects
@@ -181,27 +108,27 @@ class Epoch:
         """A numbered datagram whose check holds."""
         body = datagram[:-4]
         form, value = body[0] & 3, struct.unpack("<H", body[:2])[0] >> 2
+        decoded, shapes = self.packets, self.shapes
         parts = [(PACKET_PART, (0, body[2:]))] if form == PACKET else list(read_parts(body, 1 - self.direction))
         number = self.extend(value)
         self.received.add(number)
-        self.newest = max(self.newest, number)
+        if number > self.newest:
+            self.newest, self.heard_at = number, now
         self.received = {n for n in self.received if n > self.newest - 1024}
         complete = True
         for kind, elements in parts:
             complete &= self.take_part(now, number, kind, elements)
+        if self.packets > decoded:
+            self.packet_at = now
         if complete:
-            self.accept(now, number, parts)
+            self.accept(now, number, parts, self.shapes > shapes)
 
     def take_part(self, now: int, number: int, kind: int, elements: tuple) -> bool:
         if kind == ACK:
             newest, held, _ = elements
             back = (self.next - 1 - newest) % (1 << 16)
             require(back < 4096 and back < self.next - 1, "invalid", "R-SES-6")
-            if self.next - 1 - back > self.acknowledged:
-                self.acknowledged, self.progress_at = self.next - 1 - back, now
-                if held != NO_TIMING:
-                    self.round_trip = max(0, now - self.sent_at[self.acknowledged] - 16 * held)
-            self.take_acknowledged(newest, elements[2])
+            self.take_acknowledged(now, self.next - 1 - back, held, elements[2])
         elif kind == PIECE and self.direction == UP:
             self.take_piece(*elements)
         elif kind == FRAGMENT:
@@ -217,11 +144,27 @@ class Epoch:
             self.take_said(kind, elements)
         return True
 
-    def take_acknowledged(self, newest: int, missing: int) -> None:
-        """Of the client: which packets of its device act."""
-        if self.path:
-            number = self.next - 1 - (self.next - 1 - newest) % (1 << 16)
-            self.path.acknowledge({number} | {number - 1 - i for i in range(64) if not missing >> i & 1})
+    def measure(self, sample: int) -> None:
+        """Section 7."""
+        smoothed, variation = self.round_trip or (sample, sample // 2)
+        if self.round_trip:
+            smoothed, variation = smoothed + trunc(sample - smoothed, 8), variation + trunc(abs(smoothed - sample) - variation, 4)
+        self.round_trip = smoothed, variation
+
+    def answer(self) -> int:
+        return self.round_trip[0] + 4 * self.round_trip[1] + 25 * MS if self.round_trip else FIRST_ANSWER
+
+    def take_acknowledged(self, now: int, newest: int, held: int, missing: int) -> None:
+        """An acknowledgement of own numbers."""
+        if held != NO_TIMING and newest not in self.arrived and newest > self.next - 1 - REMEMBERED:
+            self.measure(max(0, now - self.sent_at[newest] - 16 * held))
+        numbers = {newest} | {newest - 1 - i for i in range(64) if not missing >> i & 1 and newest - 1 - i > 0}
+        if any(n not in self.arrived and n > self.next - 1 - REMEMBERED for n in numbers):
+            self.progress_at = now
+        self.arrived |= numbers
+        self.acknowledged = max(self.acknowledged, newest)
+        if self.direction == UP and self.path:              # which packets of the device act
+            self.path.acknowledge(numbers)
 
     def take_pace(self, begin: int, offset: int) -> None:
         if self.path:
@@ -243,7 +186,7 @@ class Epoch:
         window = min(WINDOW + WINDOW_PER_PIECE * len(self.pieces), LARGEST_WINDOW)
         inside = index * PIECE_SIZE < self.size and index < front + window
         require(inside and len(data) == min(PIECE_SIZE, self.size - index * PIECE_SIZE), "invalid", "R-SES-8")
-        self.pieces[index] = data
+        self.pieces.setdefault(index, data)
 
     def begin(self) -> bool:
         """The scene, once all pieces are there."""
@@ -253,11 +196,13 @@ class Epoch:
         require(fnv1a(declaration) == self.digest, "checksum", "R-SES-10")
         self.scene, _ = read_declaration(declaration)
         self.decoders = SceneDecoder(self.scene)
+        self.largest = largest_packet(self.scene)
         return True
 
     def take_fragment(self, now: int, number: int, back: int, substream: int, index: int, count: int, data: bytes) -> bool:
         sound = 2 <= count <= MOST_FRAGMENTS and index < count and back < number and 0 < len(data) <= FRAGMENT_SIZE
-        require(sound and (index == count - 1 or len(data) == FRAGMENT_SIZE), "invalid", "R-SES-7")
+        fits = FRAGMENT_SIZE < self.largest and index * FRAGMENT_SIZE + len(data) <= self.largest
+        require(sound and fits and (index == count - 1 or len(data) == FRAGMENT_SIZE), "invalid", "R-SES-7")
         name = number - back, substream
         have = self.fragments.setdefault(name, {"count": count, "data": {}, "decoded": None})
         if len(self.fragments) > MOST_IN_PIECES:
@@ -293,6 +238,7 @@ class Epoch:
         except StreamError as error:
             return self.hold(now, number, packet, error)
         self.packets += 1
+        self.shapes += isinstance(decoder, DeformableDecoder)
         if number % 64 == 0 and number == decoder.receiver.newest and getattr(decoded, "layer", 2) == 2:
             self.hash = struct.pack("<BHI", substream, number % (1 << 16), decoder.state_hash() % (1 << 32))
         if isinstance(decoder, RigidDecoder):
@@ -308,6 +254,7 @@ class Epoch:
             return False
         if decoder.receiver.kept and number <= decoder.receiver.newest or number in self.held:
             return True                                     # no use any more, or here already
+        self.held = {n: of for n, of in self.held.items() if now <= of[0] + LONGEST_HELD}
         if len(self.held) == MOST_HELD or sum(len(p) for _, p in self.held.values()) + len(packet) > max(BYTES_HELD, len(packet)):
             return False
         self.held[number] = now, packet
@@ -315,22 +262,18 @@ class Epoch:
 
     def report(self, now: int) -> bytes:
         """The playout delay, 0 as nothing is shown here, and whether a key packet is needed."""
-        waits = 4 * ((self.round_trip or 0) + self.patience)
-        is_stuck = any(now > at + max(500 * MS, waits) for at, _ in self.held.values())
+        is_stuck = any(now > at + max(500 * MS, 4 * self.answer()) for at, _ in self.held.values())
         return part(REPORT, varint(0) + bytes([is_stuck]))
 
-    def accept(self, now: int, number: int, parts: list[tuple]) -> None:
+    def accept(self, now: int, number: int, parts: list[tuple], urgent: bool) -> None:
         self.accepted[number] = now
         self.untold += 1
-        if self.ack_due is None and any(kind not in (ACK, CLOCK) for kind, _ in parts):
-            self.ack_due = now + self.patience
-        if self.ack_due is not None and (self.untold >= MOST_UNTOLD or any(self.is_urgent(*p) for p in parts)):
-            self.ack_due = min(self.ack_due, now)
-
-    def is_urgent(self, kind: int, elements: tuple) -> bool:
-        if kind != PACKET_PART:
-            return kind == STATE
-        return isinstance(self.decoders.substreams[self.decoders.split(elements[1])[0]], DeformableDecoder)
+        full = self.untold >= MOST_UNTOLD
+        if not full and all(kind in (ACK, CLOCK) or kind > PACKET_PART for kind, _ in parts):
+            return
+        urgent = full or urgent or any(kind == STATE for kind, _ in parts)
+        due = now if urgent else now + self.patience
+        self.ack_due = due if self.ack_due is None else min(self.ack_due, due)
 
     def acknowledgement(self, now: int) -> bytes:
         newest = max(self.accepted)
@@ -344,14 +287,21 @@ class Epoch:
         """Since when an answer is missing."""
         return self.progress_at if self.asked > self.acknowledged else None
 
+    def next_send(self, wanted: int) -> int:
+        """Section 9: an end sends little while nothing is acknowledged for long."""
+        if self.unanswered() is None or wanted <= self.progress_at + max(1000 * MS, 4 * self.answer()):
+            return wanted
+        return max(wanted, self.last_sent + max(50 * MS, (max(self.last_sent, self.progress_at) - self.progress_at) // 1024))
+
     def write(self, now: int, parts: list[bytes], packet: bytes = b"") -> Optional[bytes]:
-        """A numbered datagram of these parts and a packet of its own number, with an acknowledgement if there is news."""
+        """A numbered datagram of these parts and a packet of its own number, with an acknowledgement if one rides on it."""
         if self.next - 4096 > self.acknowledged:
             return None
         if packet or any(p[0] != HASH for p in parts):      # it waits for an answer
             self.progress_at = self.progress_at if self.unanswered() is not None else now
-            self.asked = self.next
-        if self.ack_due is not None:
+            self.asked, self.asked_at = self.next, now
+        self.last_sent = now
+        if self.ack_due is not None or self.accepted and any(p[0] in ASKS_BACK[self.direction] for p in parts):
             parts = [self.acknowledgement(now)] + parts
         if packet and parts:
             parts = parts + [part(PACKET_PART, varint(0) + packet)]
@@ -366,15 +316,16 @@ class Epoch:
 class Client:
     """State is closed, joining, receiving or live. `device(number)` gives the packet of the device for a datagram of that number."""
 
-    def __init__(self, nonce: int, device: Optional[Callable[[int], bytes]] = None, token: int = 0):
-        self.nonce, self.device = nonce, device
+    def __init__(self, nonce: int, device: Optional[Callable[[int], bytes]] = None, token: int = 0, now: int = 0):
+        self.nonce, self.device, self.opened_at = nonce, device, now
         self.state, self.reason = "joining", 0
         self.leaving = b""
         self.epoch: Optional[Epoch] = None
         self.token, self.seat = token, 0
         self.retry_at, self.retry = 0, 100 * MS
         self.rejoins = False                                # in this silence
-        self.sign_at = self.device_at = 0
+        self.sign_at = self.device_at = 0                   # of the last sign of life, 0: none yet; of the next packet
+        self.packet_at = -10 ** 9                           # when the last packet was decoded
         self.first_live: Optional[int] = None               # number of the first datagram that said so
 
     def handle(self, now: int, datagram: bytes) -> None:
@@ -385,20 +336,21 @@ class Client:
         require(is_of_epoch(datagram, 0 if before else self.epoch.epoch), "checksum", "R-SES-1")
         if form in (PARTS, PACKET):
             self.epoch.take(now, datagram)
+            self.packet_at = max(self.packet_at, self.epoch.packet_at)
             self.rejoins = self.rejoins and self.epoch.unanswered() is not None
             self.begin()
             return
         require(form == HANDSHAKE and value in (WELCOME, REFUSAL, LEAVE), "invalid", "R-SES-2")
         e = Cursor(datagram, 2, len(datagram) - 4)
         if value == WELCOME:
-            self.welcomed(e)
+            self.welcomed(now, e)
             return
         nonce = e.number(8, CUT) if value == REFUSAL else self.nonce
         reason = reason_of(e)
         if nonce == self.nonce and (value == LEAVE or self.state == "joining"):
             self.state, self.reason = "closed", reason
 
-    def welcomed(self, e: Cursor) -> None:
+    def welcomed(self, now: int, e: Cursor) -> None:
         nonce, serial, epoch, client = e.number(8, CUT), e.varint(CUT, SPARE), e.number(8, CUT), e.number(2, CUT)
         size, digest, start, _ = e.varint(CUT, SPARE), e.number(8, CUT), e.varint(CUT, SPARE), e.number(8, CUT)
         require(start < END_OF_TIME and e.left() == 0, *SPARE)
@@ -407,6 +359,7 @@ class Client:
         if nonce != self.nonce or self.state == "closed" or again:
             return
         self.epoch = Epoch(epoch, client, serial, size, digest, start)
+        self.epoch.heard_at = now
         self.state, self.sign_at, self.first_live, self.rejoins = "receiving", 0, None, False
         self.token = epoch if serial == 0 else self.token
         if size > HEADER_LIMIT:
@@ -439,8 +392,8 @@ class Client:
         if self.state not in ("receiving", "live"):
             return
         live, parts, packet = self.state == "live", [], b""
-        if now >= self.sign_at:
-            self.sign_at = now + self.silence()
+        if now >= self.sign_due():
+            self.sign_at = now
             if live:
                 parts.append(self.epoch.report(now))
             parts.append(part(STATE, bytes([live])))
@@ -463,21 +416,32 @@ class Client:
         if self.state == "joining" or self.rejoins:
             return self.retry_at if self.state != "closed" else float("inf")
         since = self.epoch.unanswered() if self.state in ("receiving", "live") else None
-        patience = 2 * (self.epoch.round_trip + 25 * MS if self.epoch and self.epoch.round_trip is not None else 250 * MS)
-        return float("inf") if since is None else since + max(400 * MS, patience)
+        return float("inf") if since is None else since + max(400 * MS, 2 * self.epoch.answer())
 
-    def silence(self) -> int:
-        """Until the next sign of life."""
-        heard_live = self.first_live is not None and self.epoch.acknowledged >= self.first_live
-        if self.state == "live" and not heard_live:
-            return 50 * MS
-        return 50 * MS if self.device and not self.epoch.path else 100 * MS
+    def sign_due(self) -> int:
+        """When the next sign of life goes: sections 3.1 and 10."""
+        if self.sign_at == 0:
+            return 0
+        epoch, live = self.epoch, self.state == "live"
+        if live and (self.first_live is None or epoch.acknowledged < self.first_live):
+            return epoch.next_send(self.sign_at + 50 * MS)
+        sent = max(self.sign_at, epoch.asked_at)
+        served = not live or sent < self.packet_at + 1000 * MS
+        pause = (100 if epoch.path else 50) if self.device else 100 if served else 1000
+        return epoch.next_send(sent + pause * MS)
+
+    def pass_time(self, now: int) -> None:
+        if self.state == "joining" and now >= self.opened_at + MOST_JOINING:
+            self.leave(SILENCE)
+        elif self.state in ("receiving", "live") and now >= self.epoch.heard_at + MOST_SILENCE:
+            self.leave(SILENCE)
 
     def leave(self, reason: int = BYE) -> None:
         """poll() tells the server."""
         if self.state in ("receiving", "live"):
             self.leaving = sealed(head(HANDSHAKE, LEAVE) + bytes([reason]), self.epoch.epoch)
-        self.state, self.reason = "closed", reason
+        if self.state != "closed":
+            self.state, self.reason = "closed", reason
 
 
 # ---- Testee (README.md) ---------------------------------------------------------------------------------------------
@@ -512,9 +476,11 @@ def lines(script: str) -> Iterator[dict]:
     told = None
     for number, line in enumerate(script.splitlines()):
         step, error, out = json.loads(line), None, []
+        if client:
+            client.pass_time(step["at"])
         try:
             if "join" in step:
-                client = Client(int(step["join"], 16))
+                client = Client(int(step["join"], 16), now=step["at"])
             elif "heard" in step:
                 client.handle(step["at"], bytes.fromhex(step["heard"]))
             else:

@@ -74,6 +74,7 @@ class Script {
     if (!member(line, "at")) return false;
     const std::uint64_t now = number(line, "at");
     std::optional<Error> error;
+    client_->handle_timeout(now);
     if (member(line, "join")) {
       client_->open(now, number(line, "join", 16));
     } else if (const auto heard = member(line, "heard")) {

@@ -7,16 +7,17 @@ import struct
 from typing import Iterator, Optional
 
 from conventions import Cursor, StreamError, fnv1a, require
+from datagram import (ACK, BUTTONS, BYE, CUT, DOWN, FULL, HANDSHAKE, JOIN, LEAVE, PACE, PACKET, PARTS, PIECE, PROTOCOL, REFUSAL, SILENCE,
+                      SPARE, STATE, TOO_LARGE, UP, WELCOME, WRONG_VERSION, head, is_of_epoch, part, reason_of, sealed, varint)
 from decoder import SceneDecoder
 from device_path import DevicePath, device_scene
 from scene import Declaration, read_declaration, state_bytes
-from session import (ACK, BUTTONS, BYE, CUT, DOWN, FRAGMENT, FULL, HANDSHAKE, JOIN, LEAVE, MS, PACE, PARTS, PIECE, PIECE_SIZE, REFUSAL,
-                     SILENCE, SPARE, STATE, TOO_LARGE, UP, WELCOME, WINDOW, WRONG_VERSION, Epoch, head, is_of_epoch, part, reason_of,
-                     sealed, varint)
+from session import FIRST_ANSWER, MS, PIECE_SIZE, WINDOW, Epoch
 
 
 LEAST_JOIN = 80                                             # bytes
 WELCOME_EVERY, UNPROVEN, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
+MOST_FAULTS = 100                                           # datagrams
 ROLES = "observer", "participant"
 
 
@@ -31,15 +32,37 @@ class ServedEpoch(Epoch):
         self.offered = [declaration[i:i + PIECE_SIZE] for i in range(0, len(declaration), PIECE_SIZE)]
         self.participates = participates
         self.carries: dict[int, int] = {}                   # piece in each datagram
-        self.sent: set[int] = set()
-        self.arrived: set[int] = set()
+        self.on_their_way: set[int] = set()
+        self.pieces_there: set[int] = set()
+        self.open: set[int] = set()                         # own numbers whose fate is not known
+        self.timeouts = 0                                   # of pieces, since the last that arrived
         self.device_packets = 0
 
-    def take_acknowledged(self, newest: int, missing: int) -> None:
-        for number, index in self.carries.items():
-            age = (newest - number) % (1 << 16)
-            if age == 0 or 0 < age <= 64 and not missing >> (age - 1) & 1:
-                self.arrived.add(index)
+    def take_acknowledged(self, now: int, newest: int, held: int, missing: int) -> None:
+        super().take_acknowledged(now, newest, held, missing)
+        for number in self.arrived & set(self.carries):
+            index = self.carries.pop(number)
+            self.pieces_there.add(index)
+            self.on_their_way.discard(index)
+            self.timeouts = 0
+        self.open -= self.arrived
+
+    def answer(self) -> int:
+        return self.round_trip[0] + 4 * self.round_trip[1] + 10 * MS if self.round_trip else FIRST_ANSWER
+
+    def lose_pieces(self, now: int) -> None:
+        """Section 6: what was not acknowledged for long goes again."""
+        patience = self.answer() << self.timeouts
+        if not self.on_their_way or not self.open or now < self.sent_at[min(self.open)] + patience:
+            return
+        for n in [n for n in self.open if self.sent_at[n] <= now - patience]:
+            self.open.discard(n)
+            self.on_their_way.discard(self.carries.get(n, -1))
+        self.timeouts = min(self.timeouts + 1, 1 if self.round_trip else 6)
+
+    def write(self, now: int, parts: list[bytes], packet: bytes = b"") -> Optional[bytes]:
+        self.open.add(self.next)
+        return super().write(now, parts, packet)
 
     def take_said(self, kind: int, elements: tuple) -> None:
         if kind == STATE and elements[0] == 1 and not self.live:
@@ -74,10 +97,11 @@ class ServedEpoch(Epoch):
             self.reached = device
 
     def poll(self, now: int) -> Iterator[bytes]:
-        first = next((i for i in range(len(self.offered)) if i not in self.arrived), len(self.offered))
+        self.lose_pieces(now)
+        first = next((i for i in range(len(self.offered)) if i not in self.pieces_there), len(self.offered))
         for index in range(first, min(first + WINDOW, len(self.offered))):
-            if index not in self.arrived | self.sent:
-                self.sent.add(index)
+            if index not in self.pieces_there | self.on_their_way and not self.live:
+                self.on_their_way.add(index)
                 self.carries[self.next] = index
                 yield self.write(now, [part(PIECE, varint(index) + self.offered[index])])
         if self.ack_due is not None and now >= self.ack_due:
@@ -89,17 +113,18 @@ class Connection:
     def __init__(self, peer: int, client: int, role: int, nonce: int, limits: tuple[int, int]):
         self.peer, self.client, self.role, self.nonce, self.limits = peer, client, role, nonce, limits
         self.proven = self.repeats_welcome = self.outdated = False
+        self.faults = 0                                     # datagrams that broke a rule
         self.epoch: ServedEpoch
         self.token = 0                                      # the first epoch
-        self.serial = self.heard_at = self.welcome_at = 0
+        self.serial = self.welcome_at = 0
 
     def begin(self, server: Server, epoch: int, now: int) -> None:
         self.serial += 1 if self.proven else 0
         self.repeats_welcome, self.outdated = self.proven, False
-        self.heard_at = self.welcome_at = now
+        self.welcome_at = now
         self.epoch = ServedEpoch(epoch, self.client, self.serial, len(server.declaration), fnv1a(server.declaration), server.start)
         self.token = self.token or epoch
-        self.epoch.scene = server.scene
+        self.epoch.scene, self.epoch.heard_at = server.scene, now
         self.epoch.offer(server.declaration, self.role == 1)
 
     def welcome(self) -> bytes:
@@ -118,6 +143,7 @@ class Server:
         self.connections: list[Optional[Connection]] = [None] * clients
         self.epochs = epochs
         self.says: list[tuple[int, bytes]] = []
+        self.gone: dict[int, Connection] = {}               # by number: their leaves are not sent yet
         self.left: list[tuple[int, int]] = []
         self.serve(declaration, now)
 
@@ -142,7 +168,12 @@ class Server:
         self.connections[c.client] = None
         self.left.append((c.client, reason))
         if says and c.proven:
+            self.gone[c.client] = c
             self.says += [(c.peer, sealed(head(HANDSHAKE, LEAVE) + bytes([reason]), c.epoch.epoch, DOWN))] * 3
+
+    def let_go(self, client: int, reason: int) -> None:
+        if self.connections[client]:
+            self.end(self.connections[client], reason, says=True)
 
     def handle(self, now: int, peer: int, datagram: bytes) -> None:
         """Raises StreamError if the datagram is dropped."""
@@ -154,16 +185,22 @@ class Server:
             require(value == JOIN, "invalid", "R-SES-2")
             self.join(now, peer, c, Cursor(datagram, 2, len(datagram) - 4))
             return
-        c.heard_at = now
-        if form == HANDSHAKE or form > 2:
+        try:
+            self.handle_own(now, c, datagram, form, value)
+        except StreamError as error:
+            c.faults += error.rule not in ("R-SES-4", "R-SES-6")
+            if c.faults == MOST_FAULTS:
+                self.end(c, PROTOCOL, says=True)
+            raise
+
+    def handle_own(self, now: int, c: Connection, datagram: bytes, form: int, value: int) -> None:
+        """A datagram of the epoch of this session."""
+        if form == HANDSHAKE or form > PACKET:
             require(form == HANDSHAKE and value == LEAVE, "invalid", "R-SES-2")
             reason = reason_of(Cursor(datagram, 2, len(datagram) - 4))
             c.proven = True
             self.end(c, reason, says=False)
             return
-        self.take(now, c, datagram)
-
-    def take(self, now: int, c: Connection, datagram: bytes) -> None:
         try:
             c.epoch.take(now, datagram)
         except StreamError as error:
@@ -194,12 +231,16 @@ class Server:
             return
         if c:
             self.end(c, BYE, says=False)
+        c = c or next((self.gone[i] for i in sorted(self.gone) if self.gone[i].peer == peer), None)
+        free = [c.client] if c else [i for i, there in enumerate(self.connections) if not there and i not in self.gone]
         if not self.fits((state_limit, header_limit)):
             self.refuse(peer, nonce, TOO_LARGE)
-        elif None not in self.connections:
+        elif not free:
             self.refuse(peer, nonce, FULL)
         else:
-            place = c.client if c else self.connections.index(None)
+            place = free[0]
+            if self.gone.pop(place, None):                  # it need not be told any more
+                self.says = [item for item in self.says if item[0] != peer]
             c = self.connections[place] = Connection(peer, place, role, nonce, (state_limit, header_limit))
             c.begin(self, next(self.epochs), now)
             self.says.append((peer, c.welcome()))
@@ -222,13 +263,13 @@ class Server:
 
     def pass_time(self, now: int) -> None:
         for c in self.there():
-            if now >= c.heard_at + (MOST_SILENCE if c.proven else UNPROVEN):
+            if now >= c.epoch.heard_at + (MOST_SILENCE if c.proven else UNPROVEN):
                 self.end(c, SILENCE, says=True)
 
     def poll(self, now: int) -> Iterator[tuple[int, bytes]]:
         """What is to be sent now, and to whom."""
         yield from self.says
-        self.says = []
+        self.says, self.gone = [], {}
         for c in self.there():
             if c.repeats_welcome and now >= c.welcome_at:
                 c.welcome_at = now + WELCOME_EVERY
@@ -308,7 +349,7 @@ def lines(script: str) -> Iterator[dict]:
             elif "scene" in step:
                 server.replace(bytes.fromhex(step["scene"]), now)
             elif "closes" in step:
-                server.end(server.connections[step["closes"]], step["reason"], says=True)
+                server.let_go(step["closes"], step["reason"])
         except StreamError as e:
             error = e
         said = listener.hear(list(server.poll(now + PATIENCE)))

@@ -19,8 +19,9 @@ from unittest import mock
 import differential
 import run
 from client import Device
+from datagram import STATE
 from scene import read_declaration
-from session import STATE, Epoch
+from session import Epoch
 from session_server import ServedEpoch
 
 HERE = Path(__file__).resolve().parent
@@ -287,22 +288,24 @@ sys.exit(reply.returncode)""")
 
 
 class DifferentialTest(unittest.TestCase):
-    def compare(self, testee: str) -> tuple[int, str]:
+    def compare(self, testee: str, *more: str) -> tuple[int, str]:
         out = io.StringIO()
         with contextlib.redirect_stdout(out):
-            status = differential.main(["--testee", testee, "--cases", "12"], HERE)
+            status = differential.main(["--testee", testee, "--cases", "12", *more], HERE)
         return status, out.getvalue().splitlines()[-1]
 
     def test_a_decoder_does_not_differ_from_itself(self) -> None:
-        status, counts = self.compare(shlex.join([sys.executable, str(HERE / "decoder.py")]))
-        self.assertEqual((status, counts.split(", ")[-1]), (0, "0 differences"))
+        for more in ([], ["--sessions"]):
+            status, counts = self.compare(shlex.join([sys.executable, str(HERE / "decoder.py")]), *more)
+            self.assertEqual((status, counts.split(", ")[-1]), (0, "0 differences"))
 
     def test_wrong_words_are_seen(self) -> None:
         wrong = "import sys, decoder; write = sys.stdout.write; " \
                 "sys.stdout.write = lambda text: write(text.replace('R-', 'R_').replace('true', 'True')); sys.exit(decoder.main())"
-        status, counts = self.compare(f"env PYTHONPATH={shlex.quote(str(HERE))} {shlex.join([sys.executable, '-c', wrong])}")
-        self.assertEqual(status, 1)
-        self.assertNotEqual(counts.split(", ")[-1], "0 differences")
+        for more in ([], ["--sessions"]):
+            status, counts = self.compare(f"env PYTHONPATH={shlex.quote(str(HERE))} {shlex.join([sys.executable, '-c', wrong])}", *more)
+            self.assertEqual(status, 1)
+            self.assertNotEqual(counts.split(", ")[-1], "0 differences")
 
     def test_mended_damage_passes_the_check_values(self) -> None:
         damaged = bytearray(VALID)

@@ -51,7 +51,7 @@ FLAGS = {
     "weight_sets": "a deformable object has several sets of weights",
     "models_kept": "entropy models are part of a deformable object's state",
     "client": "runs a client: the testee is called with --replica",
-    "session": "runs the client's end of a session: the testee is called with --session and reads a .script file",
+    "session": "runs an end of a session: the testee is called with --session and reads a .script file",
     "large": "the input has bytes that are not in the .tct file but in the member repeat",
 }
 

@@ -17,7 +17,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 from tools.book import ROOT, SPEC, Book
-from tools import sources
+from tools import agreement, sources
 from tools.page import dead_links, html_page, markdown_page
 
 TITLE = "Tactus: specification"
@@ -62,6 +62,7 @@ def findings(book: Book):
     yield from table_findings(book)
     yield from vector_findings(book)
     yield from sources.findings(ROOT, book.rules, book.classes)
+    yield from agreement.findings(book, ROOT)
     if with_examples(book.by_short["91"].text) != book.by_short["91"].text:
         yield f"{EXAMPLES.name} is not what its commands say: run spec/make.py examples"
     page = html_page(book, TITLE)

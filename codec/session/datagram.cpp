@@ -66,14 +66,15 @@ Result<Datagram> read_join(ByteReader& r) noexcept {
   said.nonce = r.u64();
   if (r.ok() && (magic != kMagic || (said.is_known && role > static_cast<std::uint8_t>(Role::participant))))
     return fail(Errc::unsupported, "R-SES-9", 8 * kHeadSize);
-  if (r.ok() && !said.is_known && r.bit_offset() / 8 + r.remaining() >= kLeastJoin - kCheckSize) return Datagram(said);
+  const bool is_short = r.bit_offset() / 8 + r.remaining() < kLeastJoin - kCheckSize;
+  if (r.ok() && is_short) return fail(Errc::truncated, "R-SES-3", r.bit_offset());
+  if (r.ok() && !said.is_known) return Datagram(said);
   said.role = static_cast<Role>(role);
   said.token = r.u64();
   said.seat = r.u8();
   said.state_limit = r.varint();
   said.header_limit = r.varint();
   const std::uint64_t padding = r.bit_offset();
-  if (r.ok() && padding / 8 + r.remaining() < kLeastJoin - kCheckSize) return fail(Errc::truncated, "R-SES-3", padding);
   const auto zeros = r.bytes(r.remaining());
   if (std::ranges::any_of(zeros, [](std::uint8_t byte) { return byte != 0; })) return fail(Errc::malformed, "R-SES-3", padding);
   return handshake(r, said);

@@ -21,15 +21,16 @@ sys.path.insert(0, str(ROOT / "conformance"))
 from conventions import Cursor, StreamError  # noqa: E402
 from decoder import SceneDecoder  # noqa: E402
 from scene import read_declaration  # noqa: E402
+import datagram  # noqa: E402
 import session  # noqa: E402
 
-UP, DOWN = session.UP, session.DOWN
+UP, DOWN = datagram.UP, datagram.DOWN
 WORDS = {"membrane": ["--deformable-visual", "0.001mm", "-p", "0.1%"]}  # shapes so exact that packets come in fragments
 NETWORK = "delay=20ms,jitter=4ms,loss=4%,duplicates=3%,late=2%/15ms"
 
 
 def varint(e: Cursor) -> int:
-    return e.varint(session.CUT, session.SPARE)
+    return e.varint(datagram.CUT, datagram.SPARE)
 
 
 def device_scene(scene) -> object:
@@ -41,7 +42,7 @@ def device_scene(scene) -> object:
     return read_declaration(text + struct.pack("<I", zlib.crc32(text)))[0]
 
 
-varint_bytes = session.varint
+varint_bytes = datagram.varint
 
 
 class Reference:
@@ -77,8 +78,8 @@ class Reference:
         way.newest = max(way.newest, number)
         assert number == row.number("tactus.number"), row
         for kind, e in parts_of(body):
-            if kind in (session.FRAGMENT, session.PACKET_PART) or kind == session.PIECE and direction == DOWN:
-                way.take_part(0, number, kind, session.elements_of(kind, direction, e))
+            if kind in (datagram.FRAGMENT, datagram.PACKET_PART) or kind == datagram.PIECE and direction == DOWN:
+                way.take_part(0, number, kind, datagram.elements_of(kind, direction, e))
         self.epoch.begin()
         if self.epoch.scene and not self.ways[UP].decoders:
             self.ways[UP].decoders = SceneDecoder(device_scene(self.epoch.scene))
@@ -87,12 +88,12 @@ class Reference:
 
 def parts_of(body: bytes) -> list[tuple[int, Cursor]]:
     """Type and elements, of either direction."""
-    if body[0] & 3 == session.PACKET:
-        return [(session.PACKET_PART, Cursor(b"\0" + body[2:], 0, len(body) - 1))]
+    if body[0] & 3 == datagram.PACKET:
+        return [(datagram.PACKET_PART, Cursor(b"\0" + body[2:], 0, len(body) - 1))]
     cursor, out = Cursor(body, 2, len(body)), []
     while cursor.left():
-        kind, size = cursor.number(1, session.CUT), varint(cursor)
-        out.append((kind, Cursor(cursor.take(size, session.CUT), 0, size)))
+        kind, size = cursor.number(1, datagram.CUT), varint(cursor)
+        out.append((kind, Cursor(cursor.take(size, datagram.CUT), 0, size)))
     return out
 
 
@@ -102,7 +103,7 @@ def is_new(row: Row) -> bool:
 
 def check_datagrams(rows: list[Row]) -> Reference:
     """Every datagram for itself, and packet by packet against the reference."""
-    welcome = next(r for r in rows if r.number("tactus.kind") == session.WELCOME)
+    welcome = next(r for r in rows if r.number("tactus.kind") == datagram.WELCOME)
     epoch = int.from_bytes(welcome.bytes[2 + 8 + 1:][:8], "little")  # serial is 0: one byte
     welcome["tactus.epoch"] = str(epoch)
     reference = Reference(welcome)
@@ -111,10 +112,10 @@ def check_datagrams(rows: list[Row]) -> Reference:
         direction, form = row.number("tactus.direction"), row.number("tactus.form")
         assert row["frame.protocols"].endswith(":tactus"), row
         assert direction == (DOWN if row["source"] == captures.SERVER[0] else UP), row
-        of_epoch = form != session.HANDSHAKE or row.number("tactus.kind") == session.LEAVE
+        of_epoch = form != datagram.HANDSHAKE or row.number("tactus.kind") == datagram.LEAVE
         body, check = row.bytes[:-4], struct.unpack("<I", row.bytes[-4:])[0]
-        assert check == session.check_of(body, epoch if of_epoch else 0, direction) and row.number("tactus.check.status") == 1, row
-        if form == session.HANDSHAKE:
+        assert check == datagram.check_of(body, epoch if of_epoch else 0, direction) and row.number("tactus.check.status") == 1, row
+        if form == datagram.HANDSHAKE:
             continue
         again = (direction, body) in seen
         seen.add((direction, body))
@@ -122,10 +123,10 @@ def check_datagrams(rows: list[Row]) -> Reference:
         if again:
             continue
         parts = parts_of(body)
-        if form == session.PARTS:
+        if form == datagram.PARTS:
             assert row.numbers("tactus.part.type") == [kind for kind, _ in parts], row
         found = reference.take(row)
-        if session.FRAGMENT in [kind for kind, _ in parts]:
+        if datagram.FRAGMENT in [kind for kind, _ in parts]:
             continue  # the packet is complete here, and shown in pieces
         assert row.numbers("tactus.packet.number") == [number for number, _, _, _ in found], (row, found)
         rigid = [f for f in found if f[1] == 0]
@@ -142,7 +143,7 @@ def check_acknowledgements(rows: list[Row]) -> dict:
     by_frame = {r.number("frame.number"): r for r in rows}
     smoothed = variation = least = None
     for row in filter(is_new, rows):
-        if session.ACK not in row.numbers("tactus.part.type"):
+        if datagram.ACK not in row.numbers("tactus.part.type"):
             continue
         told = by_frame[row.number("tactus.ack.frame")]
         assert told.number("tactus.number") == row.number("tactus.ack.number"), (row, told)
@@ -165,19 +166,19 @@ def check_acknowledgements(rows: list[Row]) -> dict:
 
 def check_counts(rows: list[Row], client: dict) -> list[Row]:
     """What the program counted.   out  the datagrams until the client left"""
-    count = collections.Counter((r.number("tactus.direction"), r.number("tactus.form") == session.HANDSHAKE) for r in rows)
+    count = collections.Counter((r.number("tactus.direction"), r.number("tactus.form") == datagram.HANDSHAKE) for r in rows)
     captured, traffic = client["captured"], client["traffic"]
     assert count[UP, True] + count[UP, False] == captured["up"]["datagrams"], (count, client)
     assert count[DOWN, True] + count[DOWN, False] == captured["down"]["datagrams"], (count, client)
     for way, direction in (("up", UP), ("down", DOWN)):
         assert captured[way]["bytes"] == sum(len(r.bytes) for r in rows if r.number("tactus.direction") == direction)
     assert count[UP, False] == traffic["sent"]["datagrams"], (count, traffic)
-    leaves = [r for r in rows if r.number("tactus.kind") == session.LEAVE and r.number("tactus.direction") == UP]
+    leaves = [r for r in rows if r.number("tactus.kind") == datagram.LEAVE and r.number("tactus.direction") == UP]
     assert [r.number("tactus.reason") for r in leaves] == [0, 0, 0], leaves
     heard = rows[:rows.index(leaves[0])]  # who has left hears no more
-    new = [r for r in heard if r.number("tactus.direction") == DOWN and r.number("tactus.form") != session.HANDSHAKE and is_new(r)]
+    new = [r for r in heard if r.number("tactus.direction") == DOWN and r.number("tactus.form") != datagram.HANDSHAKE and is_new(r)]
     assert len(new) == traffic["heard"]["datagrams"], (len(new), traffic)
-    pieces = [r for r in new if session.PIECE in r.numbers("tactus.part.type")]
+    pieces = [r for r in new if datagram.PIECE in r.numbers("tactus.part.type")]
     assert max(r.number("tactus.piece.received") for r in pieces) == client["declaration_bytes"], client
     return heard
 

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Facts that stand in several places: rules.csv, the registry, chapters 00, 20, 70, 90 and 95, the conformance suite. They say the same."""
+import json
+import re
+from pathlib import Path
+
+DECODED = range(10, 81)                                     # chapters that a class of conformance implements
+KINDS = ("header", "one of `objects`", "one of `meshes`", "bounds", "line of a packet", "end", "error", "line of a client's end",
+         "line of a server's end")                          # of objects in answers
+
+
+def section(book, short: str, number: str) -> str:
+    """Text of a section with its subsections, up to the next of its level."""
+    level = 2 + number.count(".")
+    found = re.search(rf"^#{{{level}}} {re.escape(number)} .*?(?=^#{{2,{level}}} |\Z)", book.by_short[short].text, re.M | re.S)
+    return found.group(0) if found else ""
+
+
+def rows(text: str):
+    """Cells of the rows of all tables."""
+    for line in text.splitlines():
+        if line.startswith("|") and not re.match(r"^\|[-|]+\|$", line):
+            yield [cell.strip() for cell in re.split(r"(?<!\\)\|", line.strip().strip("|"))]
+
+
+def ranges(numbers) -> str:
+    first, last = min(numbers), max(numbers)
+    return f"({first} to {last})"
+
+
+# ---- Rules ----------------------------------------------------------------------------------------------------------
+def numbers_of(book, wanted) -> dict:
+    """Of each prefix: numbers of the rules, by what `wanted` gives for a row."""
+    out: dict = {}
+    for rule, row in book.rules.items():
+        _, prefix, number = rule.split("-")
+        out.setdefault(prefix, {}).setdefault(wanted(row), []).append(int(number))
+    return out
+
+
+def prefix_findings(book):
+    """Registry, section 2: every prefix with its chapters, or of the implementation."""
+    text = section(book, "registry", "2")
+    told = {cells[i][2:]: cells[i + 1] for cells in rows(text) for i in (0, 3) if len(cells) > i + 1 and re.fullmatch(r"R-[A-Z]+", cells[i])}
+    for prefix, chapters in numbers_of(book, lambda row: row["chapter"]).items():
+        if "-" in chapters:
+            given = re.findall(r"\((\d+) to (\d+)\)", told.get(prefix, ""))
+            numbers = {n for first, last in given for n in range(int(first), int(last) + 1)}
+            if prefix not in told or given and numbers != set(chapters["-"]):
+                yield f"registry, section 2: R-{prefix} is {told.get(prefix)!r}; rules.csv has {sorted(chapters['-'])}"
+            continue
+        whole = ", ".join(c if len(chapters) == 1 else f"{c} {ranges(n)}" for c, n in sorted(chapters.items()))
+        if told.get(prefix) != whole:
+            yield f"registry, section 2: R-{prefix} is of {told.get(prefix)}, by rules.csv of {whole}"
+    yield from (f"registry, section 2: R-{prefix} is no rule" for prefix in told if not any(r.startswith(f"R-{prefix}-") for r in book.rules))
+
+
+def expanded(text: str, all_of: dict) -> set:
+    """Rules that a cell names: R-X-n, R-X-1, 2, R-X-8 to 13."""
+    out, prefix = set(), ""
+    for item in re.findall(r"R-[A-Z]+-(?:n|\d+)(?: to \d+)?|(?<![\w-])\d+(?: to \d+)?", text):
+        if item.startswith("R-"):
+            prefix, item = item[2:].split("-")
+        first, _, last = item.partition(" to ")
+        numbers = all_of[prefix] if first == "n" else range(int(first), int(last or first) + 1)
+        out |= {f"R-{prefix}-{n}" for n in numbers}
+    return out
+
+
+def action_findings(book):
+    """95, section 5: what a receiver does."""
+    all_of = {prefix: [n for numbers in by.values() for n in numbers] for prefix, by in numbers_of(book, lambda row: "").items()}
+    told: dict = {}
+    for cells in rows(section(book, "95", "5")):
+        if len(cells) == 3 and cells[0] in ("drop", "request_key", "close", "-"):
+            for rule in expanded(cells[1], all_of):
+                told.setdefault(rule, []).append(cells[0])
+    for rule, row in book.rules.items():
+        if row["chapter"] != "-" and told.get(rule) != [row["action"]]:
+            yield f"95, section 5: {rule} has the action {told.get(rule)}, in rules.csv {row['action']}"
+
+
+# ---- Numbers of the registry ----------------------------------------------------------------------------------------
+def flag_findings(book):
+    """Bits of the declaration's flags: 20, sections 2 and 8, registry, rules.csv."""
+    row = next(cells for cells in rows(section(book, "20", "2")) if cells[0] == "`flags`")
+    bits = [int(bit) for bit in re.findall(r"bit (\d+):", row[2])]
+    if bits != list(range(len(bits))):
+        yield f"20, section 2: flags are bits {bits}"
+    most = 2 ** len(bits) - 1
+    if f"| R-STR-4 | `flags` is at most {most}. |" not in section(book, "20", "8"):
+        yield f"20, section 8: R-STR-4 does not say that `flags` is at most {most}"
+    told = next((cells for cells in rows(section(book, "registry", "4")) if cells[0].startswith("`flags`")), [""] * 3)
+    if [int(bit) for bit in re.findall(r"bit (\d+):", told[1])] != bits or not told[2].startswith(f"bits {len(bits)}..15"):
+        yield f"registry, section 4: `flags` are {told[1]}, not assigned {told[2]}; 20, section 2 has bits 0..{len(bits) - 1}"
+    if [int(bit) for bit in re.findall(r"(\d+) \(", book.rules["R-STR-4"]["text"])] != bits:
+        yield f"rules.csv: R-STR-4 does not name bits 0..{len(bits) - 1}"
+    for used in re.findall(r"if bit (\d+) of\** `flags`", section(book, "20", "2")):
+        if int(used) not in bits:
+            yield f"20, section 2: bit {used} is used and has no meaning"
+
+
+def names_in(text: str) -> dict:
+    return {int(number): name for number, name in re.findall(r"(\d+) ([a-z]+)", text)}
+
+
+def session_findings(book):
+    """Forms, kinds, parts and reasons: 70, sections 2 and 3, registry."""
+    told = {re.sub(r" \(.*", "", cells[0]) + ("" if "70, section 3" not in cells[0] else " 3"): names_in(cells[1])
+            for cells in rows(section(book, "registry", "4")) if "(70, section" in cells[0]}
+    two, three = section(book, "70", "2"), section(book, "70", "3")
+    tables = list(rows(two))
+    is_part = [len(c) == 4 and c[2] in ("up", "down", "both") for c in tables]
+    forms = {int(c[0]): c[1] for c, part in zip(tables, is_part) if not part and len(c) == 4 and re.fullmatch(r"[0-2]", c[0])}
+    kinds = names_in(next(c[2] for c in tables if c[:2] == ["0", "handshake"]))
+    parts = {way: {int(c[0]): c[1] for c in tables if re.fullmatch(r"\d", c[0]) and len(c) == 4 and c[2] in (way, "both")} for way in ("up", "down")}
+    reasons = {int(c[0]): c[1] for c in rows(three) if len(c) == 3 and re.fullmatch(r"\d", c[0])}
+    for name, here in (("form of a datagram", forms), ("kind of a handshake", kinds), ("part `type` up", parts["up"]), ("part `type` down", parts["down"]),
+                       ("`reason` 3", reasons)):
+        if told.get(name) != here:
+            yield f"registry, section 4: {name} is {told.get(name)}; 70 has {here}"
+    for number, way in (("3.1", "down"), ("3.2", "up")):
+        named = {cells[0] for cells in rows(section(book, "70", number)) if len(cells) == 3}
+        yield from (f"70, section {number}: nothing says what the part {part} does" for part in parts[way].values() if part not in named)
+        asked = {word for cells in rows(section(book, "70", number)) if len(cells) == 5 for word in re.findall(r"\w+", cells[0])}
+        yield from (f"70, section {number}: nothing says what the handshake {kind} does" for kind in kinds.values() if kind not in asked)
+
+
+# ---- Chapters and limits --------------------------------------------------------------------------------------------
+def chapter_findings(book):
+    """00: every chapter is listed, and implemented by a class."""
+    listed = re.findall(r"\]\((\d\d)-[\w-]+\.md\)", section(book, "00", "5"))
+    there = [c.short for c in book.chapters if c.short.isdigit() and c.short != "00"]
+    if sorted(listed) != sorted(there):
+        yield f"00, section 5: lists the chapters {listed}; there are {there}"
+    classes = " ".join(cells[2] for cells in rows(section(book, "00", "4")) if len(cells) == 3)
+    named = set(re.findall(r"\b\d\d\b", classes))
+    yield from (f"00, section 4: no class implements chapter {short}" for short in there if int(short) in DECODED and short not in named)
+
+
+def limits_of(text: str) -> list:
+    """Numbers of objects, vertices, triangles, bytes of the body, bytes of states, work of bases, work of bodies, bytes of a packet."""
+    return [m if "^" in m or int(m) > 100 else "" for m in re.findall(r"\d+\^\d+|\b\d{4,}\b", text)]
+
+
+def limit_findings(book, conformance: Path):
+    """20, section 9, and the testee's limits."""
+    least = [cells[1] for cells in rows(section(book, "20", "9")) if len(cells) == 3 and re.match(r"R-", cells[2])]
+    readme = (conformance / "README.md").read_text(encoding="utf-8")
+    sentence = re.search(r"A testee has these limits:(.*?)\n\n", readme, re.S)
+    told = limits_of(re.sub(r"\(20, section 9\)", "", sentence.group(1))) if sentence else []
+    if told != least:
+        yield f"conformance/README.md: a testee's limits are {told}; 20, section 9 has {least}"
+    states = re.search(r"^STATE_LIMIT, HEADER_LIMIT = 1 << (\d+), 1 << (\d+)", (conformance / "session.py").read_text(encoding="utf-8"), re.M)
+    if states and (f"2^{states.group(1)}" != least[4] or f"2^{states.group(2)}" != least[3]):
+        yield f"conformance/session.py: joins with 2^{states.group(1)} and 2^{states.group(2)} bytes; 20, section 9 has {least[4]} and {least[3]}"
+
+
+# ---- The conformance suite ------------------------------------------------------------------------------------------
+def is_in_order(members, order: list) -> bool:
+    places = [order.index(name) if name in order else -1 for name in members]
+    return -1 not in places and places == sorted(places)
+
+
+def kind_of(line: dict) -> str:
+    if "packet" in line:
+        return "line of a packet"
+    if "line" in line:
+        return "line of a server's end" if "clients" in line else "line of a client's end"
+    return next(iter(line))
+
+
+def objects_in(line: dict):
+    """(kind, members) of a line of an answer and of what is in it."""
+    kind = kind_of(line)
+    inner = line[kind] if kind in ("header", "end", "error") else line
+    yield kind, list(inner)
+    for name, one in (("objects", "one of `objects`"), ("meshes", "one of `meshes`")):
+        yield from ((one, list(item)) for item in inner.get(name, ()) if isinstance(item, dict))
+    for name in ("bounds", "error"):
+        if isinstance(inner.get(name), dict):
+            yield name, list(inner[name])
+
+
+def suite_findings(book, conformance: Path):
+    """The README: stems, files, and the order of members in every answer."""
+    readme = (conformance / "README.md").read_text(encoding="utf-8")
+    order: dict = {}
+    for cells in rows(readme):
+        kind = cells[0] if cells[0] in KINDS else cells[0].strip("`")
+        if len(cells) == 2 and kind in KINDS:
+            order.setdefault(kind, re.findall(r"`(\w+)`", cells[1]))
+    yield from (f"conformance/README.md: no order of members for {kind}" for kind in KINDS if kind not in order)
+    stems = json.loads((conformance / "manifest.json").read_text(encoding="utf-8"))["stems"]
+    told = [cells[0].strip("`") for cells in rows(section(book, "90", "1")) if len(cells) == 2 and re.fullmatch(r"`\w+`", cells[0])]
+    if sorted(told) != sorted(stems):
+        yield f"90, section 1: stems are {told}; the manifest has {list(stems)}"
+    wrong = set()
+    for stem in stems:
+        for line in (conformance / "vectors" / f"{stem}.answers").read_text(encoding="ascii").splitlines():
+            for kind, members in objects_in(json.loads(line)):
+                if not is_in_order(members, order.get(kind, [])) and (kind, *members) not in wrong:
+                    wrong.add((kind, *members))
+                    yield f"conformance/README.md: {kind} has the members {members} in a vector of {stem}, in another order than {order.get(kind)}"
+    folder = readme.split("## In this folder")[-1]
+    for path in sorted(conformance.glob("*.[pch]*")):
+        names = (path.name, f"{path.stem}.*")
+        stars = re.findall(r"`(\w+\*)\.py`", folder)
+        if path.suffix in (".py", ".cpp", ".h") and not any(f"`{n}`" in folder for n in names) and not any(path.match(f"{s}.py") for s in stars):
+            yield f"conformance/README.md: the table of this folder does not name {path.name}"
+
+
+def findings(book, root: Path):
+    """In a copy of the specification alone the suite is not looked at."""
+    for check in (prefix_findings, action_findings, flag_findings, session_findings, chapter_findings):
+        yield from check(book)
+    if (root / "conformance" / "README.md").exists():
+        yield from limit_findings(book, root / "conformance")
+        yield from suite_findings(book, root / "conformance")
