@@ -15,10 +15,7 @@
 namespace tactus {
 namespace {
 
-// Shares of a bound that the quantisation of an update may use up; the rest is left for the motion until the next update.
-constexpr unsigned kCoarsestLevel = 15;
-constexpr double kVisualShare = 0.18;
-constexpr double kHapticShare = 0.2;
+constexpr double kHapticShare = 0.2;  // of a bound may the rounding of an update use up
 // Unless packets build on the one before and nobody repairs them, objects near their bounds join a packet that goes out anyway: a datagram's
 // headers cost more than an update. Where packets wait for their turn few objects join whenever they move at all.
 constexpr double kEarly = 0.5, kEarlyAtHeavyLoss = 0.3, kFewEarly = 0.3, kVeryFewEarly = 0.15;  // shares of a bound
@@ -26,56 +23,6 @@ constexpr std::size_t kFew = 24, kVeryFew = 12;                                 
 // Baseline::acknowledged: what is not acknowledged goes again.
 constexpr double kSomeLoss = 0.003, kMoreLoss = 0.01, kHeavyLoss = 0.15;  // shares of packets
 constexpr std::array kFollowUp{0.020, 0.040, 0.060};                      // [s] since the last sending
-
-Result<PoseThresholds> make_thresholds(double distance, double angle, const GridExponents& grid) {
-  const double unit = std::ldexp(1.0, -grid.position);
-  const double turn_unit = std::ldexp(4.0, -grid.rotation);
-  if (!(distance >= 8 * unit && distance < 1e6) || !(angle >= 8 * turn_unit && angle <= std::numbers::pi)) {
-    return fail(Errc::invalid_argument, "R-API-4");
-  }
-  PoseThresholds out;
-  const auto units = static_cast<std::int64_t>(std::min(distance / unit, 1073741824.0)) - 1;
-  out.distance_squared = units * units;
-  const auto half = static_cast<std::uint32_t>(angle / (4 * std::numbers::pi) * 4294967296.0);
-  const std::int64_t sine = sin30(half) - 8;
-  out.half_angle_squared = sine * sine;
-  const double worst = std::sqrt(0.75);
-  const auto fits = [worst](double step, double bound) { return worst * step <= kVisualShare * bound; };
-  while (out.level < kCoarsestLevel && fits(std::ldexp(unit, static_cast<int>(out.level) + 1), distance) &&
-         fits(std::ldexp(turn_unit, static_cast<int>(out.level) + 1), angle)) {
-    ++out.level;
-  }
-  return out;
-}
-
-/// pre  check()
-PoseThresholds widened(double distance, double angle, double factor, const GridExponents& grid) {
-  return make_thresholds(std::min(factor * distance, 999'999.0), std::min(factor * angle, std::numbers::pi), grid)
-      .value_or(PoseThresholds{});
-}
-
-/// A share of what is permitted; the grid level stays.
-PoseThresholds scaled(PoseThresholds t, double share) {
-  t.distance_squared = static_cast<std::int64_t>(share * share * static_cast<double>(t.distance_squared));
-  t.half_angle_squared = static_cast<std::int64_t>(share * share * static_cast<double>(t.half_angle_squared));
-  return t;
-}
-
-bool within(const PoseThresholds& t, const RigidPose& shown, const RigidState& truth) noexcept {
-  constexpr std::int64_t kFar = 1 << 30;
-  std::int64_t distance = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t d = std::clamp(static_cast<std::int64_t>(truth.position[i]) - shown.position[i], -kFar, kFar);
-    distance += d * d;
-  }
-  if (distance > t.distance_squared) return false;
-  if (shown.rotation == truth.rotation) return true;
-  const Quat30 turn = multiply(truth.rotation, conjugate(shown.rotation));
-  double half = 0;
-  for (std::size_t i = 1; i < 4; ++i) half += static_cast<double>(turn[i]) * turn[i];
-  const double length_squared = (half + static_cast<double>(turn[0]) * turn[0]) * 0x1p-60;  // 1 but for rounding
-  return half <= static_cast<double>(t.half_angle_squared) * length_squared;
-}
 
 Vec3 to_vector(const Vec3i& v, unsigned exponent) noexcept {
   const double unit = std::ldexp(1.0, -static_cast<int>(exponent));
@@ -98,8 +45,8 @@ bool are_valid(const RigidTriggers& t) noexcept {
 
 Result<void> RigidEncoder::check(const RigidTriggers& triggers, const GridExponents& grid) noexcept {
   if (!are_valid(triggers)) return fail(Errc::invalid_argument, "R-API-4");
-  TACTUS_CHECK(make_thresholds(triggers.visual_position, triggers.visual_rotation, grid));
-  if (triggers.haptic == HapticRule::fixed) TACTUS_CHECK(make_thresholds(triggers.fixed_position, triggers.fixed_rotation, grid));
+  TACTUS_CHECK(pose_thresholds(triggers.visual_position, triggers.visual_rotation, grid));
+  if (triggers.haptic == HapticRule::fixed) TACTUS_CHECK(pose_thresholds(triggers.fixed_position, triggers.fixed_rotation, grid));
   return {};
 }
 

@@ -24,19 +24,13 @@
 #include <tactus/rigid/curve.h>
 #include <tactus/rigid/encoder_choices.h>
 #include <tactus/rigid/level_of_detail.h>
+#include <tactus/rigid/pose_thresholds.h>
 #include <tactus/rigid/rigid_syntax.h>
 #include <tactus/rigid/rigid_truth.h>
 #include <tactus/rigid/rigid_work.h>
 #include <tactus/rigid/trigger.h>
 
 namespace tactus {
-
-/// Thresholds of a pose in grid units, shrunk so that the bound also holds for the unrounded truth.
-struct PoseThresholds {
-  std::int64_t distance_squared = 0;
-  std::int64_t half_angle_squared = 0;  ///< (sin(angle / 2))^2 x 2^-60 of a quaternion of length 1
-  unsigned level = 0;                   ///< coarsest grid level whose rounding stays well within
-};
 
 /// A codec of SubstreamEncoder.
 class RigidEncoder {
