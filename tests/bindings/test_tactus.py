@@ -13,6 +13,7 @@ import pathlib
 import pickle
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -112,6 +113,21 @@ def test_one_bad_object_does_not_stop_the_others():
             assert abs(shown[1] - 0.09) <= 0.006
         else:
             assert sender.held == [] and abs(shown[1] - 0.01 * tick) <= 0.006
+
+
+def test_a_recording_that_leaves_the_world_is_coded_with_a_warning():
+    places = np.zeros((200, 3))
+    places[:, 0] = np.interp(np.arange(200), (20, 100, 180), (0, 600, 0))
+    still = np.tile([1.0, 0, 0, 0], (200, 1))
+    own = tactus.Trace.from_arrays(np.arange(200) / 100, poses={"cup": (places, still), "saucer": (np.zeros((200, 3)), still)})
+    with pytest.warns(RuntimeWarning, match="cup, tick .*R-API-2.*world_size"):
+        stream = own.encode()
+    shown = stream.to_arrays()["cup"]
+    assert 500 < shown[:, 0].max() < 512 and abs(shown[-1, 0]) < 0.01
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        far = own.encode(world_size=1000)
+    assert abs(far.to_arrays()["cup"][100, 0] - 600) < 0.01
 
 
 def test_a_world_has_a_size_and_a_scene_a_number_of_objects():
