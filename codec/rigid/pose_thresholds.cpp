@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include <tactus/base/fixed.h>
+#include <tactus/base/rule.h>
 
 namespace tactus {
 
