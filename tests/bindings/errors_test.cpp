@@ -89,7 +89,9 @@ TEST(CErrors, BuilderTellsFigures) {
     EXPECT_EQ(tactus_scene_builder_create(&options, &raw, nullptr), TACTUS_OK);
     const Builder builder(raw);
     for (const char* name : {"a", "b", "c"}) EXPECT_EQ(tactus_scene_builder_rigid(raw, name, pose, 63, nullptr), TACTUS_OK);
-    if (promises) EXPECT_EQ(tactus_scene_builder_promise(raw, nullptr, nullptr, nullptr, nullptr), TACTUS_OK);
+    if (promises) {
+      EXPECT_EQ(tactus_scene_builder_promise(raw, nullptr, nullptr, nullptr, nullptr), TACTUS_OK);
+    }
     tactus_scene* scene = nullptr;
     tactus_error error{};
     EXPECT_NE(tactus_scene_builder_build(raw, &scene, &error), TACTUS_OK);
@@ -266,10 +268,9 @@ TEST(CErrors, SenderRefuses) {
   ASSERT_EQ(held_count, 1u);
   EXPECT_TRUE(held.part == TACTUS_PART_OBJECT && held.index == 1 && held.since == 1);
   EXPECT_STREQ(held.rule, "R-API-1");
-  tactus_rigid_info rigid{};
-  rigid.size = sizeof rigid;
-  ASSERT_EQ(tactus_scene_get_rigid(scene.get(), 1, &rigid, nullptr), TACTUS_OK);
-  EXPECT_STREQ(held.name, rigid.name);
+  auto named = sized<tactus_rigid_info>();
+  ASSERT_EQ(tactus_scene_get_rigid(scene.get(), 1, &named, nullptr), TACTUS_OK);
+  EXPECT_STREQ(held.name, named.name);
   truth.objects[1].pose.position[0] = 0;
   ASSERT_EQ(tactus_sender_encode(sender.get(), 5, truth.at(0), &count, nullptr), TACTUS_OK);
   ASSERT_EQ(tactus_sender_held(sender.get(), nullptr, 0, &held_count, nullptr), TACTUS_OK);

@@ -133,8 +133,11 @@ TEST(Held, FromTheFirstTickOnWhereTheSceneDeclaresIt) {
     samples[1].pose.position.x = tick < 40 ? kNan : 0.3;
     for (const Packet& packet : all(sender.encode(tick, {.objects = samples}))) ASSERT_TRUE(receiver.push(packet.bytes));
     const Vec3 shown = to_pose(receiver.replica().pose(1, tick), scene->grid.position).position;
-    if (tick < 40) EXPECT_EQ(shown, home.position);
-    else EXPECT_LE(norm(shown - samples[1].pose.position), 0.006) << tick;
+    if (tick < 40) {
+      EXPECT_EQ(shown, home.position);
+    } else {
+      EXPECT_LE(norm(shown - samples[1].pose.position), 0.006) << tick;
+    }
     EXPECT_EQ(sender.held().size(), tick < 40 ? 1u : 0u);
   }
 }

@@ -248,8 +248,11 @@ TEST(Sender, AJumpAcrossTheWholeGridTakesTwoUpdates) {
     body.pose.position.x = tick < 2 ? -500.6 + 1e-4 * static_cast<double>(tick) : 500;
     for (const Packet& packet : all(sender.encode(tick, {.objects = {&body, 1}}))) ASSERT_TRUE(receiver.push(packet.bytes));
     const double error = norm(to_pose(receiver.replica().pose(0, tick), scene->grid.position).position - body.pose.position);
-    if (tick == 2) EXPECT_NEAR(error, 488.6, 1) << "half of the way";
-    else EXPECT_LE(error, 2e-6) << tick;
+    if (tick == 2) {
+      EXPECT_NEAR(error, 488.6, 1) << "half of the way";
+    } else {
+      EXPECT_LE(error, 2e-6) << tick;
+    }
     EXPECT_TRUE(sender.held().empty());
   }
 }
