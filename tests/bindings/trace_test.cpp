@@ -334,8 +334,12 @@ TEST_F(CTrace, StructsMayBeOfAnotherVersion) {
            {"trace_mesh", 32, Direction::answer, {}, taking<tactus_trace_mesh>([&](auto*i, auto*e) {
               return tactus_trace_get_mesh(trace.get(), 0, i, e);
             })},
-           {"trace_coding", 40, Direction::option, initialised<tactus_trace_coding_init, tactus_trace_coding>(),
-            taking<tactus_trace_coding>(declare)},
+           {"trace_coding",
+            40,
+            Direction::option,
+            initialised<tactus_trace_coding_init, tactus_trace_coding>(),
+            taking<tactus_trace_coding>(declare),
+            {48}},
            {"errors_options", 32, Direction::option, initialised<tactus_errors_options_init, tactus_errors_options>(),
             taking<tactus_errors_options>(judge)},
            {"error_summary", 56, Direction::answer, {}, taking<tactus_error_summary>([&](auto*s, auto*e) {
