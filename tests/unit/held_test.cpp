@@ -122,6 +122,26 @@ TEST(Held, OneBadObjectDoesNotStopTheOthers) {
   }
 }
 
+/// It was accelerated, and what is accelerated is told with velocities ahead of it. What is held rests: all that is told of it from then on does.
+TEST(Held, RestsThoughItWasAccelerated) {
+  const SharedScene scene = SceneBuilder(1000).rigid("falls").build().value();
+  auto sender = Sender::create(scene, {.triggers = {.visual_position = 1e-3, .haptic = HapticRule::off}}).value();
+  auto receiver = Receiver::create(scene).value();
+  std::size_t told = 0;
+  for (std::int64_t tick = 0; tick < 400; ++tick) {
+    const double t = 1e-3 * static_cast<double>(tick);
+    RigidSample sample{{{10 * t * t, 0, 0}, {}}, {20 * t, 0, 0}, {}};
+    if (tick >= 200) sample.pose.position.x = kNan;
+    for (const Packet& packet : all(sender.encode(tick, {.objects = {&sample, 1}}))) {
+      ASSERT_TRUE(receiver.push(packet.bytes));
+      if (tick < 200) continue;
+      ++told;
+      EXPECT_EQ(receiver.object(0).velocity, Vec3i{}) << tick;
+    }
+  }
+  EXPECT_GT(told, 0u);
+}
+
 TEST(Held, FromTheFirstTickOnWhereTheSceneDeclaresIt) {
   const Pose home{{0.25, -0.5, 1}, {}};
   const SharedScene scene = SceneBuilder(60).rigid("good").rigid("bad", home).build().value();
@@ -136,7 +156,7 @@ TEST(Held, FromTheFirstTickOnWhereTheSceneDeclaresIt) {
     if (tick < 40) {
       EXPECT_EQ(shown, home.position);
     } else {
-      EXPECT_LE(norm(shown - samples[1].pose.position), 0.006) << tick;
+      EXPECT_LE(norm(shown - samples[1].pose.position), RigidTriggers{}.visual_position) << tick;
     }
     EXPECT_EQ(sender.held().size(), tick < 40 ? 1u : 0u);
   }
@@ -245,7 +265,8 @@ TEST(Held, ShapesAndLoadsAreTheLastGoodOnes) {
       }
     }
     EXPECT_NEAR(to_force(receiver.load(1, tick)[kExternal], 10).x, 2, 0.21);
-    EXPECT_LE(norm(to_pose(receiver.replica().pose(0, tick), scene->grid.position).position - bodies[0].pose.position), 0.006);
+    EXPECT_LE(norm(to_pose(receiver.replica().pose(0, tick), scene->grid.position).position - bodies[0].pose.position),
+              RigidTriggers{}.visual_position);
   }
 }
 
