@@ -76,6 +76,7 @@ class DeviceCoder {
     for (; !acknowledgements.empty() && acknowledgements.front().tick <= tick; acknowledgements.pop_front())
       sender.acknowledge(0, acknowledgements.front().sequence);
     TACTUS_TRY(const auto packets, tally.timed([&] { return sender.encode(tick, truth.of(tick, sample, contact)); }));
+    if (!sender.held().empty()) return tl::unexpected(Error{Errc::invalid_argument, sender.held().front().rule});
     for (const Packet& packet : packets) {
       TACTUS_CHECK(receiver.push(packet.bytes, tick));
       acknowledgements.push_back({tick + answer, packet.sequence});

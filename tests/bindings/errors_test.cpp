@@ -106,8 +106,8 @@ TEST(CErrors, BuilderTellsFigures) {
   options.limits = &limits;
   EXPECT_EQ(refused(options, nullptr, false, "R-STR-14"), "3 objects where 2 are allowed");
   options.limits = nullptr;
-  options.world_size = 4e6;  // the default bound of 6 mm needs 8 steps
-  EXPECT_NE(refused(options, nullptr, true, "R-API-4").find("6 mm"), std::string::npos);
+  options.world_size = 4e6;  // the default bound of 0.3 mm needs 8 steps
+  EXPECT_NE(refused(options, nullptr, true, "R-API-4").find("0.3 mm"), std::string::npos);
   options.world_size = 1000;
   tactus_scene_builder* raw = nullptr;
   ASSERT_EQ(tactus_scene_builder_create(&options, &raw, nullptr), TACTUS_OK);
