@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <limits>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -70,7 +71,7 @@ const char* send_and_receive() {
 }
 
 /// Also where this file is compiled with -ffast-math.
-const char* refuse_what_is_no_number() {
+const char* hold_what_is_no_number() {
   const auto scene = tactus::SceneBuilder().rigid("cube").build();
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
   std::vector<tactus::RigidSample> wrong(4);
@@ -80,7 +81,8 @@ const char* refuse_what_is_no_number() {
   wrong[3].velocity.x = nan;
   for (const tactus::RigidSample& sample : wrong) {
     auto sender = tactus::Sender::create(*scene);
-    if (sender->encode(0, {.objects = {&sample, 1}})) return "NaN or infinity is taken";
+    if (!sender->encode(0, {.objects = {&sample, 1}})) return "NaN or infinity stops the others";
+    if (sender->held().size() != 1 || std::string_view(sender->held()[0].rule) != "R-API-1") return "NaN or infinity is taken";
   }
   return nullptr;
 }
@@ -89,7 +91,7 @@ const char* refuse_what_is_no_number() {
 
 int main() {
   const char* complaint = send_and_receive();
-  if (complaint == nullptr) complaint = refuse_what_is_no_number();
+  if (complaint == nullptr) complaint = hold_what_is_no_number();
   std::puts(complaint ? complaint : "packets of a cube and of a strip in layers, there and back");
   return complaint ? 1 : 0;
 }
