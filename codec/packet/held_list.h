@@ -24,7 +24,7 @@ class HeldList {
     slots_[static_cast<std::size_t>(TruthPart::shape)].assign(meshes, kNone);
     slots_[static_cast<std::size_t>(TruthPart::touch)].assign(meshes, kNone);
     if (scene.loads) slots_[static_cast<std::size_t>(TruthPart::load)].assign(rigid, kNone);
-    const std::size_t most = rigid * (scene.loads ? 2 : 1) + 2 * meshes + 2 * kMostContacts;
+    const std::size_t most = rigid * (scene.loads ? 2 : 1) + 2 * meshes + 2 * std::size_t{kMostContacts};
     parts_.reserve(most);
     seen_.reserve(most);
   }
