@@ -91,13 +91,13 @@ Outcome copy_held(const Scene& scene, std::span<const HeldPart> held, tactus_hel
                   std::size_t* count) noexcept {
   if (count == nullptr || (out == nullptr && capacity > 0)) return refuse();
   *count = held.size();
-  if (held.size() > capacity) return TACTUS_BUFFER_TOO_SMALL;
-  for (const HeldPart& part : held) {
-    const char* const name = name_of(scene, part).data();
-    *out++ = {.part = static_cast<std::uint32_t>(part.part),
-              .index = part.index,
-              .since = part.since,
-              .rule = part.rule,
+  if (out == nullptr || held.size() > capacity) return held.empty() ? TACTUS_OK : TACTUS_BUFFER_TOO_SMALL;
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    const char* const name = name_of(scene, held[i]).data();
+    out[i] = {.part = static_cast<std::uint32_t>(held[i].part),
+              .index = held[i].index,
+              .since = held[i].since,
+              .rule = held[i].rule,
               .name = name != nullptr ? name : ""};
   }
   return TACTUS_OK;
