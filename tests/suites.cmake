@@ -27,7 +27,7 @@ function(tactus_suites program)
   endforeach()
   set(all "${once}:${nightly}")
   foreach(suite IN LISTS suites)
-    set(filter "${suite}.*:*/${suite}.*:${suite}/*")  # with values, with types
+    set(filter "${suite}.*:*/${suite}.*:${suite}/?.*:${suite}/??.*")  # with values, with types
     string(APPEND all ":${filter}")
     add_test(NAME ${program}.${suite} COMMAND ${program} --gtest_brief=1 "--gtest_filter=${filter}-${once}:${nightly}")
     set_tests_properties(${program}.${suite} PROPERTIES LABELS fast)
