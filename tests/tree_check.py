@@ -7,12 +7,17 @@
 """
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 
 SOURCE_DIRS = (".ci", "spec", "codec", "io", "metrics", "sim", "device", "bindings", "cli", "conformance", "lab", "tests", "tools", "cmake")
 CODE = {".h", ".cpp"}
 SOURCES = CODE | {".py", ".sh", ".cmake", ".mjs", ".js", ".lua"}
+ROOT = {".ci", ".clang-format", ".clang-tidy", ".github", ".gitignore", "CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "CMakePresets.json",
+        "CODE_OF_CONDUCT.md", "CONTRIBUTING.md", "LICENSE", "README.md", "SECURITY.md", "bindings", "cli", "cmake", "codec", "conformance", "device", "docs",
+        "examples", "go", "io", "lab", "metrics", "reports", "sim", "spec", "tests", "tools"}
+LAYERS = ("codec", "io", "metrics", "sim", "device", "cli")  # each includes nothing of those behind it; what stands beside them is included by nobody
 MAX_LINES = 600
 ONE_FILE = {".lua"}  # what users copy to install it: may be longer
 SHARED = {"base"}  # folders of codec/ that are not subjects of the specification
@@ -159,6 +164,22 @@ def check_sources(root):
             yield f"{path.relative_to(root)}: {len(lines)} lines, at most {MAX_LINES}: split it by subject"
 
 
+def check_root(root):
+    """Nothing is kept beside the folders and files that belong there. What git does not know may lie there."""
+    listed = subprocess.run(["git", "-C", root, "ls-files"], capture_output=True, text=True) if (root / ".git").exists() else None
+    names = {line.split("/")[0] for line in listed.stdout.splitlines()} if listed else {path.name for path in root.iterdir()}
+    for name in sorted(names - ROOT):
+        yield f"{name}: does not belong into the root of the tree"
+
+
+def check_layers(root):
+    for at, layer in enumerate(LAYERS):
+        above = LAYERS[at + 1:] + ("bindings", "conformance", "lab", "examples")
+        for path in sorted(p for p in (root / layer).rglob("*") if p.suffix in CODE):
+            for name in sorted(n for n in includes(path) if n.split("/")[0] in above and (root / n).is_file()):
+                yield f"{path.relative_to(root)}: includes {name}, of a layer above it"
+
+
 def check_sides(root):
     """The encoder never includes the decoder nor the reverse."""
     for path in sorted((root / "codec").rglob("*")):
@@ -238,7 +259,7 @@ def check_tree(root):
             yield f"CONTRIBUTING.md: the tree names {path.relative_to(root)}, which is not there"
 
 
-CHECKS = (check_sources, check_integers, check_system, check_sides, check_units, check_stems, check_tree)
+CHECKS = (check_root, check_sources, check_layers, check_integers, check_system, check_sides, check_units, check_stems, check_tree)
 
 
 def findings(root):
@@ -260,6 +281,7 @@ def self_test():
         "tests/unit/rigid_trigger_test.cpp": spdx,
         "tests/fuzz/packet_fuzz.cpp": spdx + '#include <tactus/rigid/rigid_decoder.h>\n',
         "tests/bench/rigid_bench.cpp": spdx + '#include <tactus/rigid/rigid_decoder.h>\n',
+        "cli/output.h": spdx,
     }
     bad = {  # what is changed (None: left out) and a word of the finding that must follow
         "codec/rigid/rigid.h": [("int x;\n", "licence"), (spdx + "\n" * MAX_LINES, "601 lines"),
@@ -268,6 +290,8 @@ def self_test():
                                             (spdx + "#include <cmath>\n", "floating point")],
         "cli/progress.cpp": [(spdx, "includes nothing of the operating system's")],
         "codec/rigid/rigid_decoder.h": [(spdx + '#include <tactus/rigid/rigid_encoder.h>\n', "the decoder includes")],
+        "token": [("secret", "does not belong")],
+        "codec/rigid/curve.h": [(spdx + '#include "cli/output.h"\n', "of a layer above")],
         "spec/40-rigid.md": [(None, "no spec/NN-rigid.md")],
         "tests/unit/rigid_test.cpp": [(None, "rigid.cpp: no tests/unit"), (None, "TESTED_BY names tests/unit/rigid_test.cpp")],
         "tests/unit/rigid_trigger_test.cpp": [(None, "trigger.cpp: no tests/unit")],
