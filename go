@@ -106,6 +106,7 @@ run_test() { # [all | nightly]
 run_all() {
   install $all_packages
   install_view_tools
+  step 'g++: second implementation, studies' tests/check.sh run rest
   step 'clang: build with AddressSanitizer and UndefinedBehaviorSanitizer' tests/check.sh build asan
   step 'sanitizers: tests' tests/check.sh run asan
   step 'codec alone: no package needed, nothing else linked' tests/check.sh codec-only

@@ -30,7 +30,6 @@ function(tactus_suites program)
     set(filter "${suite}.*:*/${suite}.*:${suite}/?.*:${suite}/??.*")  # with values, with types
     string(APPEND all ":${filter}")
     add_test(NAME ${program}.${suite} COMMAND ${program} --gtest_brief=1 "--gtest_filter=${filter}-${once}:${nightly}")
-    set_tests_properties(${program}.${suite} PROPERTIES LABELS fast)
     if(suite IN_LIST ARG_LONG)
       set_tests_properties(${program}.${suite} PROPERTIES COST 60)
     endif()
@@ -46,7 +45,7 @@ function(tactus_suites program)
   list(TRANSFORM suites PREPEND ${program}. OUTPUT_VARIABLE entries)
   set_tests_properties(${entries} PROPERTIES FAIL_REGULAR_EXPRESSION "0 tests from 0 test suites ran")
   add_test(NAME ${program}.registered COMMAND ${program} --gtest_list_tests "--gtest_filter=-${all}")
-  set_tests_properties(${program}.registered PROPERTIES LABELS fast FAIL_REGULAR_EXPRESSION "\n  [A-Za-z]")
+  set_tests_properties(${program}.registered PROPERTIES FAIL_REGULAR_EXPRESSION "\n  [A-Za-z]")
 endfunction()
 
 # tactus_test_headers(program): the headers that all tests read are compiled once. What is tested is optimised; the tests themselves cost more
