@@ -122,15 +122,16 @@ TEST(Held, OneBadObjectDoesNotStopTheOthers) {
   }
 }
 
-/// It was accelerated, and what is accelerated is told with velocities ahead of it. What is held rests: all that is told of it from then on does.
+/// It slowed down, and what is accelerated is told with velocities ahead of it: against its motion. To be held is to stop, which looks like more
+/// of the same. What is held rests: all that is told of it from then on does.
 TEST(Held, RestsThoughItWasAccelerated) {
-  const SharedScene scene = SceneBuilder(1000).rigid("falls").build().value();
+  const SharedScene scene = SceneBuilder(1000).rigid("rises").build().value();
   auto sender = Sender::create(scene, {.triggers = {.visual_position = 1e-3, .haptic = HapticRule::off}}).value();
   auto receiver = Receiver::create(scene).value();
   std::size_t told = 0;
   for (std::int64_t tick = 0; tick < 400; ++tick) {
     const double t = 1e-3 * static_cast<double>(tick);
-    RigidSample sample{{{10 * t * t, 0, 0}, {}}, {20 * t, 0, 0}, {}};
+    RigidSample sample{{{9 * t - 10 * t * t, 0, 0}, {}}, {9 - 20 * t, 0, 0}, {}};
     if (tick >= 200) sample.pose.position.x = kNan;
     for (const Packet& packet : all(sender.encode(tick, {.objects = {&sample, 1}}))) {
       ASSERT_TRUE(receiver.push(packet.bytes));
