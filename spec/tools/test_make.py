@@ -56,7 +56,25 @@ FAULTS = [  # file, text, what it becomes, a word of the finding
     ("../conformance/README.md", "`elastic` `interest` `bounds` |", "`elastic` `bounds` |", "header has the members"),
     ("../conformance/README.md", "2^28\nbytes of states", "2^27\nbytes of states", "a testee's limits"),
     ("../conformance/README.md", "| `datagram.py`, `session.py`", "| `session.py`", "does not name datagram.py"),
+    # References from the rest of the tree
+    ("../conformance/README.md", "(20, section 6)", "(20, section 66)", "conformance/README.md: no section 66"),
+    ("../conformance/cases/rigid.txt", "section 40 Prediction", "section 40 Guesses", "rigid.txt: no section 40 Guesses"),
+    ("../codec/reference.h", "and 5.2", "and 5.9", "codec/reference.h: no section 5.9"),
+    ("../codec/reference.h", "rigid.md sections 3", "rigid.md sections 33", "no section 33"),
+    ("../codec/reference.h", "40-rigid.md", "41-rigid.md", "no chapter spec/41-rigid.md"),
+    ("../codec/reference.h", "45-load 4", "45-load 44", "no section 44"),
+    ("../codec/reference.h", "42, section 4", "42, section 7", "no section 7"),
+    ("../codec/reference.h", "of chapter 30", "of chapter 31", "no chapter section 2 of chapter 31"),
+    ("../docs/reference.md", "#2-packet", "#2-packets", "no heading ../spec/40-rigid.md#2-packets"),
+    ("../docs/reference.md", "section 3", "section 39", "no section 39"),
+    ("../docs/reference.md", "80-file.md", "80-files.md", "no file ../spec/80-files.md"),
 ]
+
+
+REFERENCES = {  # files that refer to the specification
+    "codec/reference.h": "// Every form: spec/40-rigid.md sections 3\n// and 5.2; 42, section 4; section 2 of chapter 30.\n/// spec 45-load 4\n",
+    "docs/reference.md": "[Packets](../spec/40-rigid.md#2-packet), section 3; [files](../spec/80-file.md).\n",
+}
 
 
 def check(spec: Path):
@@ -72,8 +90,13 @@ def main() -> int:
         for path in (SPEC.parent / "conformance").iterdir():
             if path.name == "README.md":
                 shutil.copy(path, suite)
+            elif path.name == "cases":
+                shutil.copytree(path, suite / path.name)
             else:
                 (suite / path.name).symlink_to(path)
+        for name, text in REFERENCES.items():
+            (Path(scratch) / name).parent.mkdir(exist_ok=True)
+            (Path(scratch) / name).write_text(text, encoding="utf-8")
         spec = Path(scratch) / "spec"
         shutil.copytree(SPEC, spec)
         status, told = check(spec)
