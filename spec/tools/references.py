@@ -7,8 +7,8 @@ from tools.book import NUMBER, SPEC
 
 FOLDERS = ("bindings", "cli", "codec", "conformance", "device", "docs", "examples", "io", "lab", "metrics", "reports", "sim", "tests", "tools")
 SUFFIXES = {".c", ".cpp", ".cs", ".h", ".js", ".lua", ".md", ".mjs", ".py", ".sh", ".toml", ".ts", ".txt"}
-MANY = rf"{NUMBER}(?:(?:, | and | to ){NUMBER})*(?![\w^%])"
 GAP = r"(?:\s|\n[ \t]*(?://+|#|\*|--)[ \t]*)"                # between words of a comment
+MANY = rf"{NUMBER}(?:(?:,{GAP}+|{GAP}+and{GAP}+|{GAP}+to{GAP}+){NUMBER})*(?![\w^%])"
 PATTERNS = (
     # spec/40-rigid.md section 4, spec/40-rigid.md 2, 3 and 5, spec 40-rigid 4
     re.compile(rf"\bspec[/ ](?P<file>\d\d-[a-z-]+|guide|registry|errata)(?:\.md)?(?:`|\))?(?:,?{GAP}+sections?{GAP}+|{GAP})?(?P<many>{MANY})?"),
