@@ -15,7 +15,7 @@ AXES = range(3)
 
 
 def work(item: DeformableObject) -> int:
-    """As chapter 20 counts it."""
+    """As 50, section 1.5 counts it."""
     if item.fixed is None:
         return 0
     columns = item.mode_count + SPARE_COLUMNS

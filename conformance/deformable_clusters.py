@@ -14,7 +14,7 @@ AXES = range(3)
 
 
 def work(item: DeformableObject) -> int:
-    """As chapter 20 counts it."""
+    """As 50, section 1.5 counts it."""
     return 0 if item.clusters is None else len(item.rest) * (item.blend + 4) // 4
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 20 of the specification: what the scene declaration says about deformable objects."""
+"""Chapter 50 of the specification, section 1: what the scene declaration says about deformable objects."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field

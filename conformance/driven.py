@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 40 of the specification, section 4.1: the motion of an object that the client's own device pushes or holds."""
+"""Chapter 42 of the specification, section 4: the motion of an object that the client's own device pushes or holds."""
 from __future__ import annotations
 
 from math import isqrt

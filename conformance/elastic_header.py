@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 20 of the specification, section 4.1: what the scene declaration says about elastic bodies."""
+"""Chapter 55 of the specification, section 1: what the scene declaration says about elastic bodies."""
 from __future__ import annotations
 
 import functools

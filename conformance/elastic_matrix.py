@@ -102,7 +102,7 @@ def order_of(body: ElasticBody) -> Order:
 
 
 def work(order: Order) -> int:
-    """Chapter 20, section 9: what factoring takes."""
+    """Chapter 55, section 1.3: what factoring takes."""
     total = 0
     for i, first in enumerate(order.first):
         for a in AXES:

@@ -32,7 +32,7 @@ SMALLEST_OBJECT = 32
 HAS_DEFORMABLES, HAS_LOADS, IS_EASED, HAS_MOTION, IS_DRIVEN, HAS_BODIES, HAS_INTEREST = (1 << bit for bit in range(7))   # of `flags`
 
 
-class Contact(NamedTuple):                                  # chapter 40, section 4.1
+class Contact(NamedTuple):                                  # chapter 42, section 3
     held: int = 0
     point: tuple = (0, 0, 0)                                # x 2^-13 m, object's frame
     normal: tuple = (0, 0, 0)                               # x 2^-10
@@ -49,7 +49,7 @@ class State(NamedTuple):                                    # chapter 40
     ease: int = 0
     keep: int = 0
     contact: Contact = Contact()
-    lod: int = 0                                            # section 1.1
+    lod: int = 0                                            # 44, section 1
 
 
 class Object(NamedTuple):
@@ -68,7 +68,7 @@ class MotionConstants(NamedTuple):                          # chapter 40, x 2^-v
     slide_deceleration: int
 
 
-class DrivenConstants(NamedTuple):                          # chapter 40, section 4.1; all 0: the object is never driven
+class DrivenConstants(NamedTuple):                          # chapter 42, section 2; all 0: the object is never driven
     coupling: int                                           # x 2^-8 s^-2
     hold: int
     inertia: tuple                                          # x 2^-30 m^2
@@ -79,7 +79,7 @@ class DrivenConstants(NamedTuple):                          # chapter 40, sectio
 OUT_OF_INTEREST = 7
 
 
-class Interest(NamedTuple):                                 # chapter 40, section 1.1, x 2^-position_exp m
+class Interest(NamedTuple):                                 # chapter 44, section 2, x 2^-position_exp m
     full: int
     reach: int
 

@@ -133,7 +133,7 @@ class Scene:
         self.names, self.dof, self.initial = [], [], []     # a state: tick, position, rotation, velocities, ease and keep
         for _ in range(object_count): self.add_object(body)
         self.eased = flags == 4
-        require(flags in (0, 4), "deformable objects (20, 4), loads (45), motion constants, driven objects (40, 4) and interest are left out here")
+        require(flags in (0, 4), "deformable objects (50), loads (45), motion constants (40, 4), driven objects (42) and interest (44) are left out here")
         self.moving = [i for i, dof in enumerate(self.dof) if dof]
 
     def add_object(self, body):                             # 20, 3

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Check the specification and make what is made from it. Python 3 and its standard library are enough.
 
-  make.py check              links, section references, rules (here and in the sources), examples, page; exit 1 when anything is wrong
+  make.py check              links, references to sections and rules (here and in the whole tree), examples, page; exit 1 when anything is wrong
   make.py examples           write the tables of 91-worked-examples.md by the commands beside them
   make.py html OUT           all chapters as one HTML page
   make.py markdown OUT       all chapters as one Markdown file, e.g. for pandoc OUT -o OUT.pdf
@@ -17,7 +17,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 from tools.book import ROOT, SPEC, Book
-from tools import agreement, sources
+from tools import agreement, references, sources
 from tools.page import dead_links, html_page, markdown_page
 
 TITLE = "Tactus: specification"
@@ -63,6 +63,7 @@ def findings(book: Book):
     yield from vector_findings(book)
     yield from sources.findings(ROOT, book.rules, book.classes)
     yield from agreement.findings(book, ROOT)
+    yield from references.findings(book, ROOT)
     if with_examples(book.by_short["91"].text) != book.by_short["91"].text:
         yield f"{EXAMPLES.name} is not what its commands say: run spec/make.py examples"
     page = html_page(book, TITLE)

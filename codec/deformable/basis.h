@@ -87,7 +87,7 @@ ModeBasis spring_basis(const DeformableObject& object);
 // The basis of an object whose vertices are in clusters: affine maps of the clusters, blended where they meet.
 // spec/50-deformable.md section 11.
 
-/// The cluster that a vertex is expected to be in, from those of the vertices below it. spec/20-scene.md section 4
+/// The cluster that a vertex is expected to be in, from those of the vertices below it. spec/50-deformable.md section 1.2
 /// in  near  the neighbours of `vertex`;  clusters  of the vertices below it at least
 std::uint8_t expected_cluster(std::span<const std::uint32_t> near, std::span<const std::uint8_t> clusters,
                               std::uint32_t vertex) noexcept;

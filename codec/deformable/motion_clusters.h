@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Encoder side: clusters of vertices that move alike, found on shapes of a recording. spec/50-deformable.md section 11, informative.
+/// Encoder side: clusters of vertices that move alike, found on shapes of a recording. spec/guide.md section 5.
 #pragma once
 
 #include <cstddef>

@@ -30,7 +30,7 @@ struct Elimination {
 Elimination elimination(const ElasticBody& body, std::size_t vertices);
 
 inline constexpr int kStabilitySteps = 24;  ///< of the power method that looks whether an explicit method is stable
-/// Work of factoring the matrix of an implicit method. spec/20-scene.md section 9
+/// Work of factoring the matrix of an implicit method. spec/55-elastic.md section 1.3
 std::uint64_t elastic_work(const Elimination& elimination) noexcept;
 /// Of a body on so many vertices, inner ones among them, whatever its method.
 std::uint64_t elastic_work(const ElasticBody& body, std::size_t vertices);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Packets and why they were sent. spec/30-packet.md.
+/// Packets and why they were sent. spec/25-packet.md.
 #pragma once
 
 #include <cstddef>

@@ -196,7 +196,7 @@ std::uint8_t longest_ease(const UpdateCourse& course, const ErrorShare& share, s
 
 // ==== driven choice ====
 // What an update would tell of the device that drives an object: where it touches, and the drag that explains how the object moved of late.
-// spec/40-rigid.md section 4.1. Informative: an encoder's choice, which no bound depends on.
+// spec/guide.md section 3. Informative: an encoder's choice, which no bound depends on.
 
 class DevicePath;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How exactly a client is told of each rigid object: by its distance from where the client looks from. spec/40-rigid.md section 1.1.
+/// How exactly a client is told of each rigid object: by its distance from where the client looks from. spec/44-interest.md section 1.
 /// Informative: an encoder's choice, which it tells. Internal to the library.
 #pragma once
 

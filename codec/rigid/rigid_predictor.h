@@ -13,7 +13,7 @@ namespace tactus {
 
 // ==== driven body ====
 // A rigid object that a device pushes or holds, tick by tick from an update on: what the predictor `driven` shows to who knows the device.
-// spec/40-rigid.md section 4.1. Integers only.
+// spec/42-driven.md section 4. Integers only.
 //
 // Held: a free body on its own weight and the spring of the device. Pushed: it keeps to the screw of the update's velocities, as the
 // surroundings that guide it go on doing so; along it the device drives and a drag brakes.

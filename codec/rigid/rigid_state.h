@@ -27,7 +27,7 @@ enum class Predictor : std::uint8_t {
   driven = 3,     ///< the device of the client pushes or holds it; for who does not know the device, constant velocities
 };
 
-/// Where the device of a client touches an object, in the object's frame. spec/40-rigid.md section 4.1
+/// Where the device of a client touches an object, in the object's frame. spec/42-driven.md section 3
 struct DrivenContact {
   static constexpr int kPoint = 13, kNormal = 10, kDrag = 4;  ///< exponents of the grids
   bool is_held = false;                                       ///< coupled to `point`; else the proxy lies on a face through it
@@ -37,7 +37,7 @@ struct DrivenContact {
   friend bool operator==(const DrivenContact&, const DrivenContact&) = default;
 };
 
-/// Level of detail of an object that the client is not told of. spec/40-rigid.md section 1.1
+/// Level of detail of an object that the client is not told of. spec/44-interest.md section 1
 inline constexpr std::uint8_t kOutOfInterest = 7;
 
 /// Integer pose and motion of one rigid object at one tick. This is all that a decoder keeps per object.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Deformable objects in a scene declaration. spec/20-scene.md sections 4 and 7. Internal to the library.
+/// Deformable objects in a scene declaration. spec/50-deformable.md sections 1.2 and 1.6. Internal to the library.
 #pragma once
 
 #include <cstdint>

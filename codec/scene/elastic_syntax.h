@@ -31,7 +31,7 @@ std::vector<std::uint8_t> write_bounds(StreamBounds bounds);
 Result<StreamBounds> parse_bounds(ByteReader& in, const SceneSpec& spec);
 
 // ==== elastic syntax ====
-// Elastic bodies in a scene declaration. spec/20-scene.md section 4.1.
+// Elastic bodies in a scene declaration. spec/55-elastic.md section 1.1.
 
 bool has_elastic_body(std::span<const DeformableObject> objects) noexcept;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The scene declaration: everything that both ends know before the first packet. spec/20-scene.md sections 2 to 8.
+/// The scene declaration: everything that both ends know before the first packet. spec/20-scene.md.
 ///
 /// A SceneSpec is plain data that the caller fills in. A Scene is checked, immutable, and shared by sender, receiver, file and
 /// threads. SceneBuilder makes one from SI units (scene_builder.h), parse_scene() from bytes (scene_syntax.h).
@@ -48,7 +48,7 @@ struct MotionConstants {
   friend bool operator==(const MotionConstants&, const MotionConstants&) = default;
 };
 
-/// What predicts an object that the client's own device moves. spec/40-rigid.md section 4.1
+/// What predicts an object that the client's own device moves. spec/42-driven.md section 2
 struct DrivenConstants {
   /// Of one rigid object. All 0: no device drives it.
   struct Body {
@@ -65,7 +65,7 @@ struct DrivenConstants {
   friend bool operator==(const DrivenConstants&, const DrivenConstants&) = default;
 };
 
-/// Within which distances a client is told of rigid objects. spec/40-rigid.md section 1.1
+/// Within which distances a client is told of rigid objects. spec/44-interest.md section 2
 struct Interest {
   static constexpr std::uint32_t kMost = 0x7fffffff;
   std::uint32_t full = 1;   ///< x 2^-position m: so far away in full; at twice the distance bounds are twice as wide
@@ -140,10 +140,10 @@ Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits = {})
 /// Memory of the states that the decoders of all substreams keep [bytes]. spec/20-scene.md section 9
 std::uint64_t state_bytes(const SceneSpec& spec) noexcept;
 
-/// Work that computing the bases takes, in units of about 0.3 us. spec/20-scene.md section 9
+/// Work that computing the bases takes, in units of about 0.3 us. spec/50-deformable.md section 1.5
 std::uint64_t basis_work(const SceneSpec& spec) noexcept;
 
-/// Work that factoring the matrices of all elastic bodies takes, in units of about 0.5 ns. spec/20-scene.md section 9
+/// Work that factoring the matrices of all elastic bodies takes, in units of about 0.5 ns. spec/55-elastic.md section 1.3
 std::uint64_t elastic_work(const SceneSpec& spec);
 
 /// Bounds of a stream whose sender uses these thresholds. Deformable objects of profile thesis only aim at theirs.

@@ -82,7 +82,7 @@ struct StreamBounds {
 };
 
 // ==== rigid object ====
-// A rigid object as a scene declares it. spec/20-scene.md sections 2 to 7.
+// A rigid object as a scene declares it. spec/20-scene.md section 3.
 
 /// Degrees of freedom of a rigid object: world axes it may move along and turn about. No bit set: a static object, never sent.
 /// Rotation is about no axis, one axis or all three (R-STR-12).
@@ -155,7 +155,7 @@ struct ElasticBody {
 };
 
 // ==== deformable object ====
-// A deformable object as a scene declares it. spec/20-scene.md section 4.
+// A deformable object as a scene declares it. spec/50-deformable.md section 1.2.
 
 enum class DeformableProfile : std::uint8_t { thesis = 0, main = 1 };
 
@@ -237,7 +237,7 @@ struct DeformableObject {
 };
 
 /// Level of the stiffness [N/m] of a vertex: the nearest, within 3.6 % from 0.016 N/m to 690 kN/m, else the first or last of them;
-/// 0 for an infinite one, a vertex that does not move. spec/20-scene.md section 7
+/// 0 for an infinite one, a vertex that does not move. spec/50-deformable.md section 1.6
 /// err  invalid_argument R-API-4: not above 0
 Result<std::uint8_t> stiffness_level(double stiffness) noexcept;
 /// [N/m]

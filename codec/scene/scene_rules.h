@@ -36,7 +36,7 @@ RuleName broken_driven_rule(const SceneSpec& spec) noexcept;
 RuleName broken_interest_rule(const SceneSpec& spec) noexcept;
 
 // ==== vertex syntax ====
-// Vertices in a scene declaration: where they rest, and which of them are fixed. spec/20-scene.md section 4.
+// Vertices in a scene declaration: where they rest, and which of them are fixed. spec/50-deformable.md section 1.2.
 
 /// Ascending, each below `vertices`.
 inline bool are_runs(std::span<const std::uint32_t> list, std::size_t vertices) noexcept {

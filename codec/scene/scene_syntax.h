@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A scene declaration as bytes: the head of a stream file and the first message of a session. spec/20-scene.md sections 2 to 7.
+/// A scene declaration as bytes: the head of a stream file and the first message of a session. spec/20-scene.md sections 2 to 6.
 #pragma once
 
 #include <cstddef>

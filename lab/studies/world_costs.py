@@ -17,7 +17,7 @@ try:
 except ImportError:
     numpy = None  # who needs it asks needs_numpy()
 
-LODS, OUT, HYSTERESIS = 7, 7, 1.15  # levels of detail 0 to 6, out of interest: spec/40-rigid.md section 1.1
+LODS, OUT, HYSTERESIS = 7, 7, 1.15  # levels of detail 0 to 6, out of interest: spec/44-interest.md sections 1 and 3
 # CPU [us] per tick of 1 ms; bits with the session's share and without UDP and IPv4; from full interest to the widest bounds.
 COSTS = {
     "session_us": 0.48, "truth_us": 0.044, "truth_of_1000_us": 0.00099, "look_us": 0.0022, "tell_us": 0.15, "packet_us": 26.0,
@@ -106,7 +106,7 @@ def near(clients, objects, moving, reach, ticks):
 
 
 def level_limits(full, reach):
-    """[m] up to which the levels go.   spec/40-rigid.md section 1.1"""
+    """[m] up to which the levels go.   spec/44-interest.md section 3"""
     limits = numpy.minimum(full * 2.0 ** numpy.arange(LODS), reach)
     limits[-1] = reach
     return limits

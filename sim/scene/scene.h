@@ -140,7 +140,7 @@ struct SceneUser {
   }
 };
 
-/// How far away clients are told of rigid objects. spec/40-rigid.md section 1.1
+/// How far away clients are told of rigid objects. spec/44-interest.md section 1
 struct SceneInterest {
   double full = 0;   ///< [m] in full up to here, with bounds twice as wide at twice the distance
   double reach = 0;  ///< [m] not at all beyond

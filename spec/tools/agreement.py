@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Facts that stand in several places: rules.csv, the registry, chapters 00, 20, 70, 90 and 95, the conformance suite. They say the same."""
+"""Facts that stand in several places: rules.csv, the registry, chapters 00, 20, 50, 55, 70, 90 and 95, the conformance suite. They say the same."""
 import json
 import re
 from pathlib import Path
 
+LIMITS = (("20", "9"), ("50", "1.5"), ("55", "1.3"))        # chapters and sections whose tables have limits
 DECODED = range(10, 81)                                     # chapters that a class of conformance implements
 KINDS = ("header", "one of `objects`", "one of `meshes`", "bounds", "line of a packet", "end", "error", "line of a client's end",
          "line of a server's end")                          # of objects in answers
@@ -24,8 +25,14 @@ def rows(text: str):
 
 
 def ranges(numbers) -> str:
-    first, last = min(numbers), max(numbers)
-    return f"({first} to {last})"
+    """(1 to 18, 22): numbers in order, runs as their ends."""
+    runs: list = []
+    for n in sorted(numbers):
+        if runs and n == runs[-1][1] + 1:
+            runs[-1][1] = n
+        else:
+            runs.append([n, n])
+    return f"({', '.join(f'{a} to {b}' if b > a + 1 else f'{a}, {b}' if b > a else str(a) for a, b in runs)})"
 
 
 # ---- Rules ----------------------------------------------------------------------------------------------------------
@@ -82,22 +89,30 @@ def action_findings(book):
 
 # ---- Numbers of the registry ----------------------------------------------------------------------------------------
 def flag_findings(book):
-    """Bits of the declaration's flags: 20, sections 2 and 8, registry, rules.csv."""
-    row = next(cells for cells in rows(section(book, "20", "2")) if cells[0] == "`flags`")
-    bits = [int(bit) for bit in re.findall(r"bit (\d+):", row[2])]
+    """Bits of the declaration's flags: 20, sections 4, 7 and 8, the extensions, 00, registry, rules.csv."""
+    of_bit = {int(cells[0]): cells for cells in rows(section(book, "20", "4")) if len(cells) == 4 and cells[0].isdigit()}
+    bits = list(of_bit)
     if bits != list(range(len(bits))):
-        yield f"20, section 2: flags are bits {bits}"
+        yield f"20, section 4: flags are bits {bits}"
     most = 2 ** len(bits) - 1
-    if f"| R-STR-4 | `flags` is at most {most}. |" not in section(book, "20", "8"):
-        yield f"20, section 8: R-STR-4 does not say that `flags` is at most {most}"
+    if f"| R-STR-4 | `flags` is at most {most}. |" not in section(book, "20", "7"):
+        yield f"20, section 7: R-STR-4 does not say that `flags` is at most {most}"
     told = next((cells for cells in rows(section(book, "registry", "4")) if cells[0].startswith("`flags`")), [""] * 3)
     if [int(bit) for bit in re.findall(r"bit (\d+):", told[1])] != bits or not told[2].startswith(f"bits {len(bits)}..15"):
-        yield f"registry, section 4: `flags` are {told[1]}, not assigned {told[2]}; 20, section 2 has bits 0..{len(bits) - 1}"
+        yield f"registry, section 4: `flags` are {told[1]}, not assigned {told[2]}; 20, section 4 has bits 0..{len(bits) - 1}"
     if [int(bit) for bit in re.findall(r"(\d+) \(", book.rules["R-STR-4"]["text"])] != bits:
         yield f"rules.csv: R-STR-4 does not name bits 0..{len(bits) - 1}"
-    for used in re.findall(r"if bit (\d+) of\** `flags`", section(book, "20", "2")):
-        if int(used) not in bits:
-            yield f"20, section 2: bit {used} is used and has no meaning"
+    checks = {int(bit): place for bit, place in re.findall(r"^if bit (\d+) of flags is set: (.*)$", section(book, "20", "8"), re.M)}
+    if sorted(checks) != [bit for bit, cells in of_bit.items() if cells[2] != "none"]:
+        yield f"20, section 8: the order of checks has the elements of bits {sorted(checks)}"
+    for bit, cells in of_bit.items():
+        extension = re.match(r"(\d\d), section (\d+(?:\.\d+)*)$", cells[3])
+        if extension and extension.group(1) != "40" and f"Bit {bit} of `flags` is set (20, section 4)" not in section(book, *extension.groups()):
+            yield f"{cells[3]}: does not say that bit {bit} of `flags` is set"
+    for cells in rows(section(book, "00", "5")):
+        number = re.match(r"\d", cells[1]) if len(cells) == 6 else None
+        if number and not of_bit.get(int(number.group()), [""] * 4)[3].startswith(cells[0][1:3]):
+            yield f"00, section 5: {cells[0]} has bit {cells[1]}; 20, section 4 has another"
 
 
 def names_in(text: str) -> dict:
@@ -138,22 +153,33 @@ def chapter_findings(book):
     yield from (f"00, section 4: no class implements chapter {short}" for short in there if int(short) in DECODED and short not in named)
 
 
+def core_findings(book):
+    """00: how many words the core has, with the sections of 00 that belong to it."""
+    core = re.findall(r"\]\((\d\d)-[\w-]+\.md\)", section(book, "00", "5").split("**extension**")[0])
+    told = re.search(r"sections (\d) to (\d) here and the core \(section 5\): some (\d+) 000 words", book.by_short["00"].text)
+    first, last, thousands = (int(n) for n in told.groups()) if told else (1, 0, 0)
+    texts = [section(book, "00", str(n)) for n in range(first, last + 1)] + [book.by_short[short].text for short in core if short in book.by_short]
+    words = sum(len(text.split()) for text in texts)
+    if abs(words - 1000 * thousands) > 750:
+        yield f"00, section 1: the core has {words} words"
+
+
 def limits_of(text: str) -> list:
-    """Numbers of objects, vertices, triangles, bytes of the body, bytes of states, work of bases, work of bodies, bytes of a packet."""
+    """Numbers of objects, bytes of the body, of states, of a packet, vertices, triangles, work of bases, work of bodies."""
     return [m if "^" in m or int(m) > 100 else "" for m in re.findall(r"\d+\^\d+|\b\d{4,}\b", text)]
 
 
 def limit_findings(book, conformance: Path):
-    """20, section 9, and the testee's limits."""
-    least = [cells[1] for cells in rows(section(book, "20", "9")) if len(cells) == 3 and re.match(r"R-", cells[2])]
+    """20, section 9, with those of the extensions, and the testee's limits."""
+    least = [cells[1] for short, number in LIMITS for cells in rows(section(book, short, number)) if len(cells) == 3 and re.match(r"R-", cells[2])]
     readme = (conformance / "README.md").read_text(encoding="utf-8")
     sentence = re.search(r"A testee has these limits:(.*?)\n\n", readme, re.S)
-    told = limits_of(re.sub(r"\(20, section 9\)", "", sentence.group(1))) if sentence else []
+    told = limits_of(re.sub(r"\([^)]*\)", "", sentence.group(1))) if sentence else []
     if told != least:
-        yield f"conformance/README.md: a testee's limits are {told}; 20, section 9 has {least}"
+        yield f"conformance/README.md: a testee's limits are {told}; 20, section 9, 50, section 1.5 and 55, section 1.3 have {least}"
     states = re.search(r"^STATE_LIMIT, HEADER_LIMIT = 1 << (\d+), 1 << (\d+)", (conformance / "session.py").read_text(encoding="utf-8"), re.M)
-    if states and (f"2^{states.group(1)}" != least[4] or f"2^{states.group(2)}" != least[3]):
-        yield f"conformance/session.py: joins with 2^{states.group(1)} and 2^{states.group(2)} bytes; 20, section 9 has {least[4]} and {least[3]}"
+    if states and [f"2^{states.group(2)}", f"2^{states.group(1)}"] != least[1:3]:
+        yield f"conformance/session.py: joins with 2^{states.group(1)} and 2^{states.group(2)} bytes; 20, section 9 has {least[2]} and {least[1]}"
 
 
 # ---- The conformance suite ------------------------------------------------------------------------------------------
@@ -212,7 +238,7 @@ def suite_findings(book, conformance: Path):
 
 def findings(book, root: Path):
     """In a copy of the specification alone the suite is not looked at."""
-    for check in (prefix_findings, action_findings, flag_findings, session_findings, chapter_findings):
+    for check in (prefix_findings, action_findings, flag_findings, session_findings, chapter_findings, core_findings):
         yield from check(book)
     if (root / "conformance" / "README.md").exists():
         yield from limit_findings(book, root / "conformance")

@@ -12,7 +12,7 @@ RULE = r"R-[A-Z]+-\d+"
 NUMBER = r"\d+(?:\.\d+)*"
 REFERENCE = re.compile(
     rf"(?P<rule>{RULE})(?![\w-])"
-    rf"|(?:\b(?P<book>\d\d|registry|errata), )?\b(?:section (?P<one>{NUMBER})|sections (?P<many>{NUMBER}(?:(?:, | and | to ){NUMBER})*))"
+    rf"|(?:\b(?P<book>\d\d|registry|errata|guide), )?\b(?:section (?P<one>{NUMBER})|sections (?P<many>{NUMBER}(?:(?:, | and | to ){NUMBER})*))"
     r"|\b[Cc]hapters? (?P<chapters>\d\d(?:(?:, | and )\d\d)*)")
 ELSEWHERE = re.compile(r"(?:\bits|[Tt]hesis,|RFC \d+,) $")       # before "section": of another document
 ACTIONS = {"drop", "request_key", "close", "-"}
@@ -53,7 +53,7 @@ class Chapter:
 
 class Book:
     def __init__(self):
-        paths = sorted(SPEC.glob("[0-9][0-9]-*.md")) + [SPEC / f"{n}.md" for n in ("errata", "registry")]
+        paths = sorted(SPEC.glob("[0-9][0-9]-*.md")) + [SPEC / f"{n}.md" for n in ("errata", "guide", "registry")]
         self.chapters = [Chapter(p) for p in paths if p.exists()]
         self.by_short = {c.short: c for c in self.chapters}
         with open(SPEC / "rules.csv", encoding="utf-8", newline="") as table:

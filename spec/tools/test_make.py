@@ -27,14 +27,18 @@ FAULTS = [  # file, text, what it becomes, a word of the finding
     ("90-test-vectors.md", "| R-RIG-4 |", "| R-RIG-3 |", "R-RIG-4 has no vector"),
     ("tables/rigid-start-models.csv", "BASELINE[1],16384", "BASELINE[1],16383", "SHA-256"),
     # What stands in several places
-    ("registry.md", "| R-ELA | 20 |", "| | |", "R-ELA is of None, by rules.csv of 20"),
-    ("registry.md", "50 (8 to 14)", "50 (8 to 13)", "R-DEF is of 20 (1 to 7), 50 (8 to 13)"),
+    ("registry.md", "| R-ELA | 55 |", "| | |", "R-ELA is of None, by rules.csv of 55"),
+    ("registry.md", "20 (1 to 18, 22), 42", "20 (1 to 17, 22), 42", "R-STR is of 20 (1 to 17, 22)"),
     ("registry.md", "surface files (1 to 7)", "surface files (1 to 6)", "R-SRF is"),
     ("registry.md", "| R-TGN | filling", "| R-TGO | filling", "R-TGO is no rule"),
     ("registry.md", "bit 6: interest", "bit 7: interest", "registry, section 4: `flags`"),
     ("registry.md", "bits 7..15; refused", "bits 6..15; refused", "registry, section 4: `flags`"),
     ("20-scene.md", "`flags` is at most 127", "`flags` is at most 63", "R-STR-4 does not say that `flags` is at most 127"),
-    ("20-scene.md", "; bit 6: it has **interest**", "; it has **interest**", "bit 6 is used and has no meaning"),
+    ("20-scene.md", "| 6 | has **interest** |", "| 7 | has **interest** |", "20, section 4: flags are bits"),
+    ("20-scene.md", "if bit 6 of flags is set: 44", "if interest is declared: 44", "20, section 8: the order of checks has"),
+    ("44-interest.md", "Bit 6 of `flags`", "Bit 5 of `flags`", "44, section 2: does not say that bit 6"),
+    ("00-overview.md", "(42-driven.md) | 4 |", "(42-driven.md) | 3 |", "00, section 5: [42 Driven objects](42-driven.md) has bit 3"),
+    ("50-deformable.md", "| work of the bases | 2^22 |", "| work of the bases | 2^23 |", "a testee's limits"),
     ("20-scene.md", "| bytes of states | 2^28 |", "| bytes of states | 2^29 |", "a testee's limits"),
     ("rules.csv", "(it has elastic bodies) and 6 (it has interest) are", "(it has elastic bodies) are", "R-STR-4 does not name bits 0..6"),
     ("70-session.md", "| 5 | state | up |", "| 5 | status | up |", "registry, section 4: part `type` up"),
@@ -46,13 +50,32 @@ FAULTS = [  # file, text, what it becomes, a word of the finding
     ("95-security.md", "R-DEF-8 to 14", "R-DEF-8 to 13", "95, section 5: R-DEF-14 has the action None"),
     ("95-security.md", "R-ELA-n, R-SES-10", "R-ELA-n", "95, section 5: R-SES-10 has"),
     ("00-overview.md", "| [55 Elastic bodies](55-elastic.md) |", "| Elastic bodies |", "00, section 5: lists"),
-    ("00-overview.md", "30, 40, 45, 50; of 55", "30, 40, 50; of 55", "no class implements chapter 45"),
+    ("00-overview.md", "44, 45, 50; of 55", "44, 50; of 55", "no class implements chapter 45"),
+    ("00-overview.md", "some 11 000 words", "some 14 000 words", "00, section 1: the core has"),
     ("90-test-vectors.md", "| `session` | both ends", "| `sessions` | both ends", "90, section 1: stems"),
     ("../conformance/README.md", "| `line` `clients` `left` `error`", "| `line` `error` `clients` `left`", "line of a server's end has the members"),
     ("../conformance/README.md", "`elastic` `interest` `bounds` |", "`elastic` `bounds` |", "header has the members"),
     ("../conformance/README.md", "2^28\nbytes of states", "2^27\nbytes of states", "a testee's limits"),
     ("../conformance/README.md", "| `datagram.py`, `session.py`", "| `session.py`", "does not name datagram.py"),
+    # References from the rest of the tree
+    ("../conformance/README.md", "(20, section 6)", "(20, section 66)", "conformance/README.md: no section 66"),
+    ("../conformance/cases/rigid.txt", "section 40 Prediction", "section 40 Guesses", "rigid.txt: no section 40 Guesses"),
+    ("../codec/reference.h", "and 5.2", "and 5.9", "codec/reference.h: no section 5.9"),
+    ("../codec/reference.h", "rigid.md sections 3", "rigid.md sections 33", "no section 33"),
+    ("../codec/reference.h", "40-rigid.md", "41-rigid.md", "no chapter spec/41-rigid.md"),
+    ("../codec/reference.h", "45-load 4", "45-load 44", "no section 44"),
+    ("../codec/reference.h", "42, section 4", "42, section 7", "no section 7"),
+    ("../codec/reference.h", "of chapter 30", "of chapter 31", "no chapter section 2 of chapter 31"),
+    ("../docs/reference.md", "#2-packet", "#2-packets", "no heading ../spec/40-rigid.md#2-packets"),
+    ("../docs/reference.md", "section 3", "section 39", "no section 39"),
+    ("../docs/reference.md", "80-file.md", "80-files.md", "no file ../spec/80-files.md"),
 ]
+
+
+REFERENCES = {  # files that refer to the specification
+    "codec/reference.h": "// Every form: spec/40-rigid.md sections 3\n// and 5.2; 42, section 4; section 2 of chapter 30.\n/// spec 45-load 4\n",
+    "docs/reference.md": "[Packets](../spec/40-rigid.md#2-packet), section 3; [files](../spec/80-file.md).\n",
+}
 
 
 def check(spec: Path):
@@ -68,8 +91,13 @@ def main() -> int:
         for path in (SPEC.parent / "conformance").iterdir():
             if path.name == "README.md":
                 shutil.copy(path, suite)
+            elif path.name == "cases":
+                shutil.copytree(path, suite / path.name)
             else:
                 (suite / path.name).symlink_to(path)
+        for name, text in REFERENCES.items():
+            (Path(scratch) / name).parent.mkdir(exist_ok=True)
+            (Path(scratch) / name).write_text(text, encoding="utf-8")
         spec = Path(scratch) / "spec"
         shutil.copytree(SPEC, spec)
         status, told = check(spec)
