@@ -100,9 +100,6 @@ void RigidTruth::read(std::span<const RigidSample> samples, std::optional<std::s
     const bool is_known = i < samples.size() && scene_.objects[i].dof != Dof::none;
     if (is_known && (all || !is_same(samples[i], last_[i]))) take(i, samples[i]);
   }
-  if (!all) return;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    if (scene_.objects[i].dof == Dof::none) last_[i] = samples[i];
 }
 
 void RigidTruth::read(std::span<const Contact> contacts) noexcept {
