@@ -58,10 +58,14 @@ def trunc(a: int, b: int) -> int:
     return a // b if a >= 0 else -(-a // b)
 
 
+def largest_rigid(scene: Declaration) -> int:
+    return 64 + (296 if scene.driven else 208) * len(scene.moving())
+
+
 def largest_packet(scene: Declaration) -> int:
     """Section 5: bytes that a packet of this scene may have, the number of its substream among them."""
     moving, users = len(scene.moving()), scene.loads.users if scene.loads else 0
-    most = [(64 + (296 if scene.driven else 208) * moving) if moving else 0, 64 + (112 + 48 * users) * moving if scene.loads else 0]
+    most = [largest_rigid(scene) if moving else 0, 64 + (112 + 48 * users) * moving if scene.loads else 0]
     for item in scene.deformables:
         most.append(96 + (17 + 6 * item.quant_bits) * len(item.rest) if item.profile == THESIS else
                     112 + 16 * item.mode_count + 40 * len(item.rest))
@@ -239,7 +243,8 @@ class Epoch:
             return self.hold(now, number, packet, error)
         self.packets += 1
         self.shapes += isinstance(decoder, DeformableDecoder)
-        if number % 64 == 0 and number == decoder.receiver.newest and getattr(decoded, "layer", 2) == 2:
+        layered = isinstance(decoder, DeformableDecoder) and self.scene.deformables[substream - 1].layered
+        if number % 64 == 0 and number == decoder.receiver.newest and not layered:
             self.hash = struct.pack("<BHI", substream, number % (1 << 16), decoder.state_hash() % (1 << 32))
         if isinstance(decoder, RigidDecoder):
             self.held = {n: of for n, of in self.held.items() if n > decoder.receiver.newest}
@@ -252,10 +257,13 @@ class Epoch:
         decoder = self.decoders.substreams[self.decoders.split(packet)[0]]
         if not isinstance(decoder, RigidDecoder):
             return False
-        if decoder.receiver.kept and number <= decoder.receiver.newest or number in self.held:
-            return True                                     # no use any more, or here already
+        if decoder.receiver.kept and number <= decoder.receiver.newest:
+            return True                                     # no use any more
         self.held = {n: of for n, of in self.held.items() if now <= of[0] + LONGEST_HELD}
-        if len(self.held) == MOST_HELD or sum(len(p) for _, p in self.held.values()) + len(packet) > max(BYTES_HELD, len(packet)):
+        if number in self.held:
+            return True                                     # here already
+        room = max(BYTES_HELD, 1 + largest_rigid(self.scene))
+        if len(self.held) == MOST_HELD or sum(len(p) for _, p in self.held.values()) + len(packet) > room:
             return False
         self.held[number] = now, packet
         return True
@@ -271,9 +279,15 @@ class Epoch:
         full = self.untold >= MOST_UNTOLD
         if not full and all(kind in (ACK, CLOCK) or kind > PACKET_PART for kind, _ in parts):
             return
-        urgent = full or urgent or any(kind == STATE for kind, _ in parts)
-        due = now if urgent else now + self.patience
+        urgent = full or urgent or any(kind == STATE and not self.was_driving for kind, _ in parts)
+        due = now if urgent else self.wait_from(now)
         self.ack_due = due if self.ack_due is None else min(self.ack_due, due)
+
+    was_driving = False                                     # at the server: the client was live before this datagram, in a scene with paths
+
+    def wait_from(self, now: int) -> int:
+        """When an acknowledgement is due that something asks for now."""
+        return now + self.patience
 
     def acknowledgement(self, now: int) -> bytes:
         newest = max(self.accepted)
@@ -398,15 +412,15 @@ class Client:
                 parts.append(self.epoch.report(now))
             parts.append(part(STATE, bytes([live])))
             self.first_live = self.epoch.next if live and self.first_live is None else self.first_live
-        if self.epoch.hash:
-            parts.append(part(HASH, self.epoch.hash))
-            self.epoch.hash = None
         if live and self.device and now >= self.device_at:
             self.device_at = now + 10 * MS
             packet = self.device(self.epoch.next)
             if self.epoch.path:
                 self.epoch.keep_device(self.epoch.next, packet)
         due = self.epoch.ack_due is not None and now >= self.epoch.ack_due
+        if self.epoch.hash and (parts or packet or due):
+            parts.append(part(HASH, self.epoch.hash))
+            self.epoch.hash = None
         datagram = self.epoch.write(now, parts, packet) if parts or packet or due else None
         if datagram:
             yield datagram

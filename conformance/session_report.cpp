@@ -113,7 +113,8 @@ class Script {
     const Scene& scene = *receiver.scene();
     out_ << R"(,"states":[)";
     const char* comma = "";
-    for (std::size_t i = scene.moving().empty() ? 1 : 0; i <= scene.deformables.size(); ++i) {
+    const std::size_t first = scene.moving().empty() && !scene.deformables.empty() ? 1 : 0;
+    for (std::size_t i = first; i <= scene.deformables.size() + (scene.loads ? 1 : 0); ++i) {
       out_ << comma << '"' << hex(receiver.state_hash(i), 16) << '"';
       comma = ",";
     }

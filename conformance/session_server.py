@@ -18,6 +18,7 @@ from session import FIRST_ANSWER, MS, PIECE_SIZE, WINDOW, Epoch
 LEAST_JOIN = 80                                             # bytes
 WELCOME_EVERY, UNPROVEN, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
 MOST_FAULTS = 100                                           # datagrams
+DRIVEN_PATIENCE = 140 * MS
 ROLES = "observer", "participant"
 
 
@@ -37,15 +38,49 @@ class ServedEpoch(Epoch):
         self.open: set[int] = set()                         # own numbers whose fate is not known
         self.timeouts = 0                                   # of pieces, since the last that arrived
         self.device_packets = 0
+        self.told, self.asked_first = 0, None               # newest of the last acknowledgement; when something asked first since
+        self.told_changed = False                           # one below it was accepted since
+        self.fates: list[bool] = []                         # whether numbers were lost, as far as it is known
+
+    def take(self, now: int, datagram: bytes) -> None:
+        self.was_driving = self.path is not None
+        super().take(now, datagram)
+
+    def accept(self, now: int, number: int, parts: list[tuple], urgent: bool) -> None:
+        self.told_changed |= number < self.told
+        super().accept(now, number, parts, urgent)
+
+    def wait_from(self, now: int) -> int:
+        """Section 4: long where the path of a device is known, while all is well."""
+        self.asked_first = now if self.asked_first is None else self.asked_first
+        well = not self.told_changed and all(n in self.accepted for n in range(self.told + 1, max(self.accepted) + 1))
+        loss = sum(self.fates[-256:]) / max(128, len(self.fates[-256:]))
+        return self.asked_first + DRIVEN_PATIENCE if self.path and well and loss <= 0.01 else now + self.patience
+
+    def acknowledgement(self, now: int) -> bytes:
+        self.told, self.asked_first, self.told_changed = max(self.accepted), None, False
+        return super().acknowledgement(now)
+
+    def find_lost(self, now: int, newest: int, there: set[int]) -> None:
+        """Section 7."""
+        self.fates += [False] * len(self.open & there)
+        self.open -= there
+        if self.round_trip is None:
+            return
+        patience = self.round_trip[0] + max(4 * self.round_trip[1], 1000)
+        for n in sorted(n for n in self.open if n < newest and (newest - n > 64 or now - self.sent_at[n] > patience)):
+            self.open.discard(n)
+            self.fates.append(True)
+            self.on_their_way.discard(self.carries.get(n, -1))
 
     def take_acknowledged(self, now: int, newest: int, held: int, missing: int) -> None:
         super().take_acknowledged(now, newest, held, missing)
+        self.find_lost(now, newest, self.arrived)
         for number in self.arrived & set(self.carries):
             index = self.carries.pop(number)
             self.pieces_there.add(index)
             self.on_their_way.discard(index)
             self.timeouts = 0
-        self.open -= self.arrived
 
     def answer(self) -> int:
         return self.round_trip[0] + 4 * self.round_trip[1] + 10 * MS if self.round_trip else FIRST_ANSWER

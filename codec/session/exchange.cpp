@@ -45,7 +45,10 @@ void Exchange::send_with(Sender coder, bool repairs) {
 
 void Exchange::receive_with(Receiver decoder) {
   fragments_ = Fragments(largest_packet(*decoder.scene()));
-  if (direction_ == Direction::up && !decoder.scene()->moving().empty()) held_.emplace(max_rigid_packet(*decoder.scene()) + 1);
+  const Scene& scene = *decoder.scene();
+  const bool has_rigid = !scene.moving().empty() || scene.deformables.empty();  // a substream of them, with objects or none
+  if (direction_ == Direction::up && has_rigid) held_.emplace(max_rigid_packet(scene) + 1);
+  newest_.assign(scene.deformables.size() + 2, 0);
   receiver.emplace(std::move(decoder));
 }
 
@@ -181,10 +184,13 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
 bool Exchange::took(const DecodedPacket& decoded, std::size_t size, Reading& reading) noexcept {
   ++traffic_.packets_heard;
   traffic_.payload_heard += size;
-  const bool newest = receiver->tick(decoded.substream) == decoded.tick;
-  if (direction_ == Direction::up && decoded.number % kHashEvery == 0 && newest && decoded.layer == Layer::all) {
-    const auto hash = static_cast<std::uint32_t>(receiver->state_hash(decoded.substream));
-    reading.heard.hash = HashPart{static_cast<std::uint8_t>(decoded.substream), static_cast<std::uint16_t>(decoded.number), hash};
+  if (direction_ == Direction::up && decoded.number > newest_[decoded.substream]) {
+    newest_[decoded.substream] = decoded.number;
+    if (decoded.number % kHashEvery == 0 && decoded.layer == Layer::all) {
+      const auto hash = static_cast<std::uint32_t>(receiver->state_hash(decoded.substream));
+      reading.heard.hash =
+          HashPart{static_cast<std::uint8_t>(decoded.substream), static_cast<std::uint16_t>(decoded.number), hash};
+    }
   }
   if (decoded.substream != 0) return true;
   newest_rigid_ = std::max(newest_rigid_, decoded.number);

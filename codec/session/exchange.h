@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <tactus/receiver.h>
 #include <tactus/sender.h>
@@ -202,10 +203,11 @@ class Exchange {
   Fragments fragments_{0};
   std::array<Slot, SentNumbers::kRemembered> slots_{};
   SentFragments sent_fragments_;
-  std::optional<Resends> resends_;   // none: no packet goes twice
-  std::optional<HeldPackets> held_;  // none: what lacks its baseline is refused
-  std::uint64_t newest_rigid_ = 0;   // number of the newest packet of rigid objects that was decoded
-  std::uint64_t rigid_heard_ = 0;    // the same, or that is held
+  std::optional<Resends> resends_;     // none: no packet goes twice
+  std::optional<HeldPackets> held_;    // none: what lacks its baseline is refused
+  std::vector<std::uint64_t> newest_;  // at a client: number of the newest packet of each substream
+  std::uint64_t newest_rigid_ = 0;     // number of the newest packet of rigid objects that was decoded
+  std::uint64_t rigid_heard_ = 0;      // the same, or that is held
   bool repairs_ = false, repaired_ = true, waits_ = false;
   bool fixed_playout_ = false;       // by its user: known before the first packet
   std::uint64_t playout_ = 0;        // [us] of the client

@@ -113,10 +113,15 @@ Result<void> SessionServer::replace_scene(SharedScene scene, std::uint64_t now) 
   return out_of_memory();
 }
 
+/// The session of this address, or else one that is gone and whose leaves still go there.
 ServerConnection* SessionServer::Impl::find(std::uint64_t peer) noexcept {
-  for (std::size_t i = 0; i < peers.size(); ++i)
-    if (peers[i] == peer && connections[i]->peer() == peer) return connections[i].get();
-  return nullptr;
+  ServerConnection* gone = nullptr;
+  for (std::size_t i = 0; i < peers.size(); ++i) {
+    if (peers[i] != peer || connections[i]->peer() != peer) continue;
+    if (connections[i]->state() != SessionState::closed) return connections[i].get();
+    if (gone == nullptr) gone = connections[i].get();
+  }
+  return gone;
 }
 
 void SessionServer::Impl::drop(ServerConnection& connection, SessionEvent event, LeaveReason reason) noexcept {

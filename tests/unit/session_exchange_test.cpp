@@ -353,6 +353,39 @@ TEST(Exchange, EachSixtyFourthPacketIsHashed) {
   EXPECT_GE(hashed.size(), 3u);
 }
 
+/// A client's end for single packets of one object.
+struct Alone {
+  explicit Alone(std::uint8_t dof = Dof::all) {
+    const SharedScene scene = SceneBuilder(1000).rigid("object", {}, dof).baselines(64).build().value();
+    client.receive_with(Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}}).value());
+  }
+  Exchange::Heard hear(std::uint64_t number, const Bytes& packet) {
+    DatagramWriter writer(Direction::down);
+    writer.begin(number);
+    EXPECT_TRUE(writer.add(PacketPart{0, packet}));
+    const auto bytes = writer.finish(kEpoch);
+    const auto read = read_datagram(bytes, Direction::down).value();
+    return client.handle(0, std::get<Numbered>(read), [](const Part&, const auto&) { return Result<void>(); }).value();
+  }
+  Exchange client{Direction::up, kEpoch, 0};
+};
+
+TEST(Exchange, AnOvertakenPacketIsNotHashedThoughItIsOfTheSameTick) {
+  Alone alone;
+  alone.hear(60, {0xfa, 0xb7, 0x82, 0xeb, 0xe4, 0xc0});
+  alone.hear(66, {0x37, 0x37, 0x30, 0xf6, 0xc0, 0xce, 0x84, 0xba});  // both build on 60, at tick 10
+  EXPECT_FALSE(alone.hear(64, {0x2f, 0x61, 0x70, 0xf6, 0xc0, 0xa2, 0xb4}).hash);
+  EXPECT_EQ(alone.client.traffic().packets_heard, 3u);
+}
+
+TEST(Exchange, PacketsOfASceneInWhichNothingMovesAreHeldToo) {
+  Alone alone(0);
+  alone.hear(3, {0xfa, 0xb7, 0x82, 0xeb, 0xe4, 0xc0});  // a key packet: it names an object that does not move
+  EXPECT_FALSE(alone.client.due());
+  alone.hear(5, {0x10, 0x22, 0x1f, 0xb8, 0x7f, 0xce, 0x60});  // builds on 4
+  EXPECT_TRUE(alone.client.due()) << "held, and so acknowledged";
+}
+
 TEST(Exchange, APacketFromBeforeTheFirstNumberIsCountedAsRefused) {
   Ends ends;
   DatagramWriter writer(Direction::down);

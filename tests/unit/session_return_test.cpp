@@ -2,10 +2,13 @@
 /// Who comes back, and where: another address, a program that crashed, a server that began anew, seats. spec/70-session.md section 3
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <optional>
+#include <variant>
 
 #include <tactus/scene/scene_builder.h>
+#include <tactus/session/datagram.h>
 #include "session_fixture.h"
 
 namespace tactus {
@@ -98,6 +101,29 @@ TEST(SessionReturn, AProgramThatCrashedComesBackToItsPlace) {
   EXPECT_EQ(visit.count(ServerEvent::Kind::left, number), 1u);
   EXPECT_EQ(visit.count(ServerEvent::Kind::joined, number), 2u);
   EXPECT_EQ(visit.count(ServerEvent::Kind::moved, number), 0u);
+}
+
+/// Until its leaves are sent, both are at this address.
+TEST(SessionReturn, ASessionThatComesToTheAddressOfOneThatIsGoneIsHeardAtOnce) {
+  auto server = SessionServer::create(scene(), {.clients = 2}, 1, 0).value();
+  DatagramWriter writer(Direction::up);
+  const auto join = [&](std::uint64_t peer, std::uint64_t nonce, std::uint64_t token) {
+    return server.handle_datagram(0, peer, writer.write(Join{Role::participant, nonce, 1 << 28, 1 << 20, token, 0}));
+  };
+  const auto say = [&](std::uint64_t peer, std::uint64_t epoch, std::uint64_t number) {
+    writer.begin(number);
+    EXPECT_TRUE(writer.add(StatePart{0}));
+    return server.handle_datagram(0, peer, writer.finish(epoch));
+  };
+  std::array<std::uint64_t, 2> epochs{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_TRUE(join(10 + i, 5 + i, 0));
+    epochs[i] = std::get<Welcome>(read_datagram(server.poll_datagram(0)->bytes, Direction::down).value()).epoch;
+    ASSERT_TRUE(say(10 + i, epochs[i], 1));
+  }
+  server.close(0, LeaveReason::bye);
+  ASSERT_TRUE(join(10, 6, epochs[1]));
+  EXPECT_TRUE(say(10, epochs[1], 2));
 }
 
 TEST(SessionReturn, ATokenThatTheServerDoesNotKnowIsNone) {
