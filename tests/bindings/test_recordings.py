@@ -142,6 +142,7 @@ def test_arrays_are_refused_with_rule_and_place():
         with pytest.raises(tactus.Error) as refused:
             tactus.Trace.from_arrays(**arguments)
         assert refused.value.rule == rule and place in str(refused.value), arguments
+        assert "--" not in str(refused.value), refused.value  # options of the program help nobody here
     one_back = time.copy()
     one_back[5] = 0.01
     trace = tactus.Trace.from_arrays(one_back, {"cup": good})
