@@ -12,6 +12,7 @@ from . import _abi
 
 # What the library says in words of the command line, for those rules that arrays and options of Python break.
 _REMEDIES = {
+    "R-API-5": "Check that the inputs belong together and that times increase.",
     "R-API-4": "Give weber_fraction above 0 and at most 1, which is 100 % (haptic=HAPTIC_OFF for no bound of force), visual_position and "
                "fixed_position of at least 2e-6 m, and angles of 4e-5 to pi rad.",
     "R-CSV-4": "Give finite numbers in at least one row; a row of NaN is a missing sample.",
@@ -69,7 +70,13 @@ def refusal(rule: str, subject: str, name: str = "TACTUS_INVALID_ARGUMENT") -> E
     """An error that Python finds."""
     error = _abi.tactus_error()
     error.status, error.rule = getattr(_abi, name), rule.encode()
-    return Error(error, subject)
+    return told(error, subject)
+
+
+def told(error: Any, finding: str) -> Error:
+    """An error whose finding says all: the text of its rule, which covers other cases too, is left out."""
+    plain = Error(error, finding)
+    return Error(error, finding, f"{finding} ({plain.name}, {plain.rule}). {plain.remedy}".rstrip())
 
 
 def _whole(kind: Any) -> Any:
