@@ -307,8 +307,9 @@ std::string missing_force_bound(std::vector<std::string> users, std::size_t obje
   if (users.empty()) return {};
   for (std::string& user : users) user = shown(user);
   if (objects == 0)
-    return fmt::format("No force bound: the recording has forces of user {} and no rigid object; `tactus bench signals` codes forces alone.",
-                       fmt::join(users, ", "));
+    return fmt::format(
+        "No force bound: the recording has forces of user {} and no rigid object; `tactus bench signals` codes forces alone.",
+        fmt::join(users, ", "));
   return fmt::format("No force bound: the recording has forces of user {} and no contacts; declare them with {}.",
                      fmt::join(users, ", "), declare);
 }
