@@ -95,7 +95,7 @@ def work(options):
     os.environ[INSIDE] = "1"
     shown = not (options.quiet or options.no_progress)
     points = of_points.Points(plan, folder, inputs)
-    inputs.make(plan, mine, options.jobs, shown)
+    inputs.make(plan, mine, points.build, options.jobs, shown)
     missing = [point for point in mine if points.row(point) is None]
     if options.merge and missing:
         refuse_missing(folder, everything, missing)
@@ -113,7 +113,7 @@ def finish(options, plan, points, everything, mine, missing, start):
     folder, files = points.folder, []
     known = [row for row in map(points.row, everything) if row is not None]
     if len(known) == len(everything):
-        files, notes = of_tables.write(plan, folder, known, points.inputs.digests)
+        files, notes = of_tables.write(plan, folder, known, points.inputs.read | points.inputs.digests)
         for note in notes:
             print("note: " + arguments.printable(note), file=sys.stderr)
     seconds = [float(row["seconds"]) for row in known]

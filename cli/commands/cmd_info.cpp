@@ -162,7 +162,7 @@ class UnboundForces {
       if (users_[i].has_force && !users_[i].has_contact) names.push_back(info_.users[i].name);
     if (names.empty()) return;
     out["users_without_force_bound"] = names;
-    out["force_bound"] = missing_force_bound(names, "`tactus encode --contact`");
+    out["force_bound"] = missing_force_bound(names, info_.objects.size(), "`tactus encode --contact`");
   }
 
  private:

@@ -86,6 +86,10 @@ tl::expected<ContactDeclarations, Failure> ContactArguments::of(const TraceInfo&
     if (std::ranges::find(info.users, of.user, &TraceUser::name) == info.users.end())
       return refuse(fmt::format("{}: --contact: there is no user \"{}\"", shown_path(file), shown(of.user)),
                     fmt::format("Users of this trace: {}.", names_of(info.users)));
+    if (info.objects.empty())
+      return refuse(
+          fmt::format("{}: --contact: there is no rigid object \"{}\", nor any other", shown_path(file), shown(of.object)),
+          "Record or add the pose of what is touched; `tactus bench signals` codes forces alone.");
     if (std::ranges::find(info.objects, of.object, &TraceObject::name) == info.objects.end())
       return refuse(fmt::format("{}: --contact: there is no rigid object \"{}\"", shown_path(file), shown(of.object)),
                     fmt::format("Rigid objects of this trace: {}.", names_of(info.objects)));

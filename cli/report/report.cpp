@@ -300,12 +300,16 @@ std::string broken_bounds(const Report& r) {
 
 std::string missing_force_bound(const Report& r) {
   if (!r.fidelity || r.fidelity->bounds().haptic == HapticRule::off) return {};
-  return missing_force_bound(r.fidelity->unbound_users());
+  return missing_force_bound(r.fidelity->unbound_users(), r.objects);
 }
 
-std::string missing_force_bound(std::vector<std::string> users, const std::string& declare) {
+std::string missing_force_bound(std::vector<std::string> users, std::size_t objects, const std::string& declare) {
   if (users.empty()) return {};
   for (std::string& user : users) user = shown(user);
+  if (objects == 0)
+    return fmt::format(
+        "No force bound: the recording has forces of user {} and no rigid object; `tactus bench signals` codes forces alone.",
+        fmt::join(users, ", "));
   return fmt::format("No force bound: the recording has forces of user {} and no contacts; declare them with {}.",
                      fmt::join(users, ", "), declare);
 }

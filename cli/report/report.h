@@ -253,8 +253,8 @@ void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const Trigge
 std::string broken_bounds(const Report& report);
 /// Of users who feel forces without any contact; empty: there are none.   "No force bound: the recording has forces of user hand ..."
 std::string missing_force_bound(const Report& report);
-/// in  declare  the option that declares contacts
-std::string missing_force_bound(std::vector<std::string> users, const std::string& declare = "--contact");
+/// in  objects  how many rigid objects there are;  declare  the option that declares contacts
+std::string missing_force_bound(std::vector<std::string> users, std::size_t objects, const std::string& declare = "--contact");
 /// A failure that says so.   in  file  that was judged
 Outcome verdict(const Report& report, const std::string& file);
 

@@ -26,6 +26,15 @@ class Refusal(Exception):
         self.findings = list(findings) or [(text, remedy)]
 
 
+def how_to_install(*packages):
+    """Packages for the Python that runs this: Debian's own gets them from apt, any other from its pip."""
+    from_apt = "apt-get install " + " ".join("python3-" + package for package in packages)
+    if sys.prefix == "/usr":
+        return "Install it: " + from_apt
+    return (f"Install it for this Python: {sys.executable} -m pip install {' '.join(packages)}. "
+            f"Or use Debian's Python: {from_apt}; PATH=/usr/bin:$PATH")
+
+
 class Parser(argparse.ArgumentParser):
     def error(self, message):
         raise Refusal(message, f"`{self.prog} --help` lists what it takes.", USAGE)

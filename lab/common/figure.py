@@ -15,7 +15,7 @@ import re
 import sys
 import textwrap
 
-from .arguments import USAGE, Refusal
+from .arguments import USAGE, Refusal, how_to_install
 from .table import write_whole
 
 ENDINGS = (".svg", ".png", ".pdf")
@@ -43,8 +43,7 @@ def pyplot():
     except ImportError as refused:
         name = (refused.name or "matplotlib").partition(".")[0]
         raise Refusal(f"figures need {name}, which {sys.executable} does not find",
-                      "Install it: apt-get install " + ("python3-matplotlib" if name == "matplotlib" else "python3-numpy python3-matplotlib"),
-                      missing="matplotlib") from None
+                      how_to_install(*(("matplotlib",) if name == "matplotlib" else ("numpy", "matplotlib"))), missing="matplotlib") from None
     matplotlib.use("agg")
     matplotlib.pyplot.rcParams.update(STYLE)
     return matplotlib.pyplot

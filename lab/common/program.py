@@ -29,7 +29,8 @@ def study():
     """The path of tactus-study (lab/study), which only a build tree has."""
     found = os.environ.get("TACTUS_STUDY")
     if not found or not os.path.exists(found):
-        raise Refusal("this needs the program tactus-study, which is not here", "Build it with TACTUS_WITH_STUDY=ON.")
+        raise Refusal("this needs the program tactus-study, which is not here",
+                      "It is not installed with tactus: use the tactus of a build, such as that of ./go demo (TACTUS_WITH_STUDY=ON).")
     return found
 
 

@@ -10,7 +10,7 @@ import sys
 import tempfile
 
 from common import program
-from common.arguments import Refusal
+from common.arguments import Refusal, how_to_install
 
 try:
     import numpy
@@ -56,7 +56,7 @@ HEAD = ["what", "clients", "objects", "moving", "reach_m", "tick_s", "bytes_per_
 
 def needs_numpy():
     if numpy is None:
-        raise Refusal(f"this study needs NumPy, which {sys.executable} does not find", "Install it: apt-get install python3-numpy")
+        raise Refusal(f"this study needs NumPy, which {sys.executable} does not find", how_to_install("numpy"))
 
 
 def measure(progress):

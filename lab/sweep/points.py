@@ -2,8 +2,9 @@
 """Points of a sweep: their inputs are made, their commands run, what they report is kept.
 
 DIR/points/HASH.json holds what was measured of one point. HASH is of the program's build, the words of the command and the content of
-its inputs: a killed sweep resumes, shards and machines that share DIR (or whose folders are copied together) add to one another, and
-results of two builds, commands or recordings never mix.
+its inputs and of other files that it reads: a killed sweep resumes, shards and machines that share DIR (or whose folders are copied
+together) add to one another, and results of two builds, commands or recordings never mix. DIR/points/FILE.made holds the same of the
+command that made an input.
 """
 import hashlib
 import json
@@ -18,6 +19,7 @@ from common.arguments import USAGE, Refusal
 from common.table import write_whole
 from .plan import HOST, SECONDS, filled
 
+WRITING = {"-o", "--output", "--layout", "--pcap", "--plot", "--stiffness-map", "--stream"}  # options of the program whose value is written
 TYPED = "Give a folder with the files that the points use, named as `--list` shows them."
 
 
@@ -26,11 +28,21 @@ def as_argument(path):
     return "./" + path if path.startswith("-") else path
 
 
+def files_read(words):
+    """Files that are there and that a command names, but for those that it writes."""
+    found = set()
+    for before, word in zip(["", *words], words):
+        option, equals, value = word.partition("=") if word.startswith("--") else ("", "", "")
+        if before not in WRITING and option not in WRITING:
+            found.add(value if equals else word)
+    return sorted(filter(os.path.isfile, found))
+
+
 class Inputs:
     """Where the files of a plan's inputs are: in the sweep's folder, or where the user has them."""
 
     def __init__(self, plan, folder, given):
-        self.folder, self.given, self.digests = as_argument(folder), {}, {}
+        self.folder, self.given, self.digests, self.read = as_argument(folder), {}, {}, {}
         files = {file for point in plan.points() for file in plan.files_of(point)} if given else set()
         for one in given:
             self.take(plan, files, one)
@@ -63,15 +75,17 @@ class Inputs:
         return [self.words(made, point, self.path_of(file)) for file, (made, point) in sorted(wanted.items(), key=lambda one: one[0])
                 if made.command and file not in self.given]
 
-    def make(self, plan, points, jobs, shown):
-        """Make those that these points use and that are not there."""
+    def make(self, plan, points, build, jobs, shown):
+        """Make those that these points use and that are not there, or were made by another build, command or file."""
         wanted = {file: (made, point) for point in reversed(points) for file, made in plan.files_of(point).items()}
         progress = program.Progress("inputs", len(wanted), shown)
-        program.side_by_side(lambda file: self.make_one(plan, file, *wanted[file]), sorted(wanted), jobs, progress)
+        program.side_by_side(lambda file: self.make_one(file, *wanted[file], build), sorted(wanted), jobs, progress)
 
-    def make_one(self, plan, file, made, point):
-        path = self.path_of(file)
-        if file in self.given or os.path.exists(path):
+    def make_one(self, file, made, point, build):
+        path, record = self.path_of(file), f"{self.folder}/points/{file}.made"
+        words = self.words(made, point, "{file}")
+        now = json.dumps([build, words, self.digests_of(words)]) + "\n"
+        if file in self.given or os.path.exists(path) and text_of(record) in (None, now):  # without a record it is the user's
             return
         if not made.command:
             raise Refusal(f"input {made.name}: the plan has no command that makes it", f"Give the file with --inputs {made.name}=FILE.")
@@ -81,18 +95,36 @@ class Inputs:
             if not os.path.exists(f"{aside}/{file}"):
                 raise Refusal(f"input {made.name}: the command left no file", "Let the command write to {file}.")
             os.replace(f"{aside}/{file}", path)
+            write_whole(record, now.encode())
         finally:
             shutil.rmtree(aside, ignore_errors=True)
 
     def digest_of(self, file):
-        """Of what the file holds; None: it is not there.   raises OSError"""
-        if file not in self.digests:
-            try:
-                with open(self.path_of(file), "rb") as content:
-                    self.digests[file] = hashlib.file_digest(content, "sha256").hexdigest()
-            except FileNotFoundError:
-                return None
-        return self.digests[file]
+        """Of what the file of an input holds; None: it is not there.   raises OSError"""
+        return digest(self.digests, file, self.path_of(file))
+
+    def digests_of(self, words):
+        """[[file, digest]] of other files that a command reads.   raises OSError"""
+        return [[path, digest(self.read, path, path)] for path in files_read(words)]
+
+
+def digest(known, name, path):
+    if name not in known:
+        try:
+            with open(path, "rb") as content:
+                known[name] = hashlib.file_digest(content, "sha256").hexdigest()
+        except FileNotFoundError:
+            return None
+    return known[name]
+
+
+def text_of(path):
+    """None: it is not there."""
+    try:
+        with open(path, encoding="utf8") as file:
+            return file.read()
+    except FileNotFoundError:
+        return None
 
 
 def pointed(report, place):
@@ -124,7 +156,8 @@ class Points:
     def file_of(self, point):
         """Where the point's result is. Inputs count by what they hold, not by where they are.   pre  they are there"""
         words = self.plan.words(point, lambda file: f"sha256:{self.inputs.digest_of(file)}")
-        text = json.dumps([self.build, words])
+        others = self.inputs.digests_of(words)
+        text = json.dumps([self.build, words, others] if others else [self.build, words])
         return f"{self.folder}/points/{hashlib.sha256(text.encode()).hexdigest()[:32]}.json"
 
     def row(self, point):

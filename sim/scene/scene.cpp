@@ -359,10 +359,13 @@ tl::expected<std::string, Diagnostic> find_scene(const std::string& name) {
   if (fs::is_regular_file(name, ignored)) return name;
   const fs::path path = scene_folder() / (name + ".toml");
   if (name.find('/') == std::string::npos && fs::is_regular_file(path, ignored)) return path.string();
-  return tl::unexpected(
-      Diagnostic{.error = fail(Errc::io, "R-SCN-1").value(),
-                 .file = name,
-                 .remedy = "no such file, nor a scene of that name; name a file, or one of" + names_of_scenes()});
+  const std::string names = names_of_scenes();
+  return tl::unexpected(Diagnostic{.error = fail(Errc::io, "R-SCN-1").value(),
+                                   .file = name,
+                                   .remedy = names.empty()
+                                                 ? "no such file; the scenes of Tactus are not in " + scene_folder().string() +
+                                                       ": leave the program where it was installed, or name a file"
+                                                 : "no such file, nor a scene of that name; name a file, or one of" + names});
 }
 
 tl::expected<Scene, Diagnostic> parse_attached_scene(std::string_view text) {

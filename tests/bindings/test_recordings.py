@@ -142,6 +142,7 @@ def test_arrays_are_refused_with_rule_and_place():
         with pytest.raises(tactus.Error) as refused:
             tactus.Trace.from_arrays(**arguments)
         assert refused.value.rule == rule and place in str(refused.value), arguments
+        assert "--" not in str(refused.value), refused.value  # options of the program help nobody here
     one_back = time.copy()
     one_back[5] = 0.01
     trace = tactus.Trace.from_arrays(one_back, {"cup": good})
@@ -225,8 +226,8 @@ def test_declared_contacts_give_recorded_forces_a_bound():
     assert packets(touched) > 0
     held = tactus.Trace.from_arrays(*arrays, {"hand": position + [0, 0, 0.01]}, contacts={"hand": ("cup", 500, "spring")})
     assert held.users["contact"]["kind"][100, 0] == 2 and (held.users["contact"]["device"][100, 0] == (position + [0, 0, 0.01])[100]).all()
-    for contacts, rule, place in [({"foot": ("cup", 500)}, "R-API-5", "contacts: a user or an object"),
-                                  ({"hand": ("saucer", 500)}, "R-API-5", ""), ({"hand": ("cup", -1)}, "R-API-4", ""),
+    for contacts, rule, place in [({"foot": ("cup", 500)}, "R-API-5", "no user 'foot', but 'hand'"),
+                                  ({"hand": ("saucer", 500)}, "R-API-5", "no object 'saucer', but 'cup'"), ({"hand": ("cup", -1)}, "R-API-4", ""),
                                   ({"hand": 500}, "R-CSV-8", "contacts['hand'] is 500"),
                                   ({"hand": ("cup", 500, "cube")}, "R-CSV-8", "neither 'plane' nor 'spring'")]:
         with pytest.raises(tactus.Error) as refused:

@@ -11,6 +11,7 @@ import multiprocessing
 import os
 import pathlib
 import pickle
+import shutil
 import subprocess
 import sys
 import warnings
@@ -113,6 +114,27 @@ def test_one_bad_object_does_not_stop_the_others():
             assert abs(shown[1] - 0.09) <= 0.006
         else:
             assert sender.held == [] and abs(shown[1] - 0.01 * tick) <= 0.006
+
+
+def test_poses_alone_are_refused_with_what_they_lack():
+    with pytest.raises(ValueError, match=r"\(1, 7\), not \(objects, 13\).*velocity.*tick_rate"):
+        tactus.Sender(tactus.build_scene([tactus.RigidObject("cube")])).encode(0, [[0, 0, 0, 1, 0, 0, 0]])
+
+
+def test_an_installation_in_any_folder_finds_its_libraries(tmp_path):
+    package = pathlib.Path(tactus.__file__).parent
+    if not (package / "libtactus.so.0").exists():
+        pytest.skip("the libraries are not beside the package")
+    folder = tmp_path / "lib/python3/dist-packages"
+    shutil.copytree(package, folder / "tactus", ignore=shutil.ignore_patterns("*.so.0", "__pycache__"))
+    for library in ("libtactus.so.0", "libtactus-trace.so.0"):
+        shutil.copy(package / library, tmp_path / "lib" / library)
+    words = [sys.executable, "-c", "import tactus; tactus._library.core(), tactus._library.traces(); print(tactus.__file__)"]
+    alone = {name: value for name, value in os.environ.items() if name != "LD_LIBRARY_PATH"} | {"PYTHONPATH": str(folder)}
+    assert subprocess.run(words, env=alone, check=True, capture_output=True, text=True).stdout.startswith(str(folder))
+    (tmp_path / "lib/libtactus.so.0").unlink()
+    refused = subprocess.run(words, env=alone, check=False, capture_output=True, text=True)
+    assert "LD_LIBRARY_PATH" in refused.stderr and refused.returncode == 1
 
 
 def test_a_recording_that_leaves_the_world_is_coded_with_a_warning():
@@ -478,7 +500,7 @@ test_a_mesh_survives_saving = needs_program(test_a_mesh_survives_saving)
 def test_a_fraction_of_four_is_not_four_percent():
     with pytest.raises(tactus.Error) as refused:
         tactus.build_scene([tactus.RigidObject("cube")], rigid_bounds=tactus.RigidBounds(weber_fraction=4))
-    assert refused.value.rule == "R-API-4" and "100 %" in str(refused.value)
+    assert refused.value.rule == "R-API-4" and "100 %" in str(refused.value) and "weber_fraction" in refused.value.remedy
     trace = tactus.Trace.from_arrays(np.arange(100) / 100, np.zeros((100, 3)))
     with pytest.raises(tactus.Error) as refused:
         trace.encode(tactus.RigidBounds(weber_fraction=4))

@@ -177,6 +177,8 @@ def findings(page, name):
         if block.kind == "text":
             if before is None and block.mark != "not run":
                 yield f"{where}: a block `text` shows what the block before it prints, and there is none that runs"
+            if not block.text.strip():
+                yield f"{where}: a block `text` shows nothing"
         elif block.mark != "not run" and not (
                 block.kind in SHELL | {"python", "js"} or block.mark == "example" or block.mark == "file" and block.kind in FILES):
             yield f"{where}: nobody runs a block `{block.kind}`; say why: <!-- not run: REASON -->"
@@ -238,7 +240,7 @@ def self_test():
              ("```\necho a\n```\n```text\nb\n```\n", ["the page shows"]), ("<!-- not run: it is too long -->\n```\nfalse\n```\n", []),
              ("<!-- needs no-such-thing -->\n```\nfalse\n```\n", []), ("<!-- file a.toml -->\n```toml\nx = 1\n```\n```\ncat a.toml\n```\n```text\nx = 1\n```\n", []),
              ("<!-- example nothing.cpp -->\n```cpp\nx\n```\n", ["not lines"])]
-    told = [("```rust\n```\n", "nobody runs"), ("```text\na\n```\n", "none that runs"), ("[a](gone.md)\n", "leads nowhere"),
+    told = [("```\ntrue\n```\n```text\n```\n", "shows nothing"), ("```rust\n```\n", "nobody runs"), ("```text\na\n```\n", "none that runs"), ("[a](gone.md)\n", "leads nowhere"),
             ("# A b\n[a](#a-b)\n[c](#c)\n", "no such heading"), ("<!-- not run: so -->\n```\n```\n", "without a reason")]
     with tempfile.TemporaryDirectory() as scratch:
         (pathlib.Path(scratch) / "tactus").symlink_to("/bin/false")

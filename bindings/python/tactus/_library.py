@@ -10,6 +10,17 @@ from typing import Any
 
 from . import _abi
 
+# What the library says in words of the command line, for those rules that arrays and options of Python break.
+_REMEDIES = {
+    "R-API-5": "Check that the inputs belong together and that times increase.",
+    "R-API-4": "Give weber_fraction above 0 and at most 1, which is 100 % (haptic=HAPTIC_OFF for no bound of force), visual_position and "
+               "fixed_position of at least 2e-6 m, and angles of 4e-5 to pi rad.",
+    "R-CSV-4": "Give finite numbers in at least one row; a row of NaN is a missing sample.",
+    "R-CSV-5": "Sort the rows by time, and make a trace for each recording.",
+    "R-CSV-7": "Give time in seconds as floats (whole numbers are nanoseconds), or time_unit as it is, such as 'ms'; or tick_rate in Hz.",
+    "R-CSV-8": "Give each array one row per time: 3 columns of a position or force, 7 of a position and a rotation, or a pair of both.",
+}
+
 OK, NOTHING, BUFFER_TOO_SMALL = _abi.TACTUS_OK, _abi.TACTUS_NOTHING, _abi.TACTUS_BUFFER_TOO_SMALL
 NO_CLOCK = -(1 << 63)
 
@@ -36,7 +47,7 @@ class Error(Exception):
         self.code: int = error.status
         self.rule: str = (error.rule or b"").decode()
         self.bit_offset: int = error.bit_offset
-        self.remedy: str = library.tactus_error_remedy(told).decode()
+        self.remedy: str = _REMEDIES.get(self.rule) or library.tactus_error_remedy(told).decode()
         self.advice: str = ("none", "drop", "request_key", "close")[library.tactus_error_advice(told)]
         self.subject, self.words, self.detail = subject, words, detail
         place = f" at byte {self.bit_offset // 8}" if self.bit_offset else ""
@@ -59,7 +70,13 @@ def refusal(rule: str, subject: str, name: str = "TACTUS_INVALID_ARGUMENT") -> E
     """An error that Python finds."""
     error = _abi.tactus_error()
     error.status, error.rule = getattr(_abi, name), rule.encode()
-    return Error(error, subject)
+    return told(error, subject)
+
+
+def told(error: Any, finding: str) -> Error:
+    """An error whose finding says all: the text of its rule, which covers other cases too, is left out."""
+    plain = Error(error, finding)
+    return Error(error, finding, f"{finding} ({plain.name}, {plain.rule}). {plain.remedy}".rstrip())
 
 
 def _whole(kind: Any) -> Any:
@@ -103,11 +120,13 @@ class _Library:
     """A shared library whose functions are attributes; those with a tactus_error raise Error."""
 
     def __init__(self, name: str, parts: tuple[str, ...], needs: str) -> None:
-        beside = pathlib.Path(__file__).with_name(name)
+        here = pathlib.Path(__file__).resolve().parent
+        # beside, as in a wheel; lib/ above lib/python3/dist-packages/tactus, as an installation has it; else where the system looks
+        found = next((path for path in (here / name, *(folder / name for folder in here.parents[1:3])) if path.exists()), name)
         try:
-            library = ctypes.CDLL(str(beside) if beside.exists() else name)
+            library = ctypes.CDLL(str(found))
         except OSError as why:
-            raise ImportError(f"{name} cannot be loaded: {why}. {needs}") from why
+            raise ImportError(f"{name} cannot be loaded: {why}. {needs} Where it is installed, name its folder in LD_LIBRARY_PATH.") from why
         for part in parts:
             for function, (result, arguments) in _abi.FUNCTIONS[part].items():
                 entry = getattr(library, function)

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import Error, Handle, call, refusal, text_of, traces
+from ._library import Error, Handle, call, refusal, text_of, told, traces
 
 NO_TIME = -(1 << 63)
 _UNITS = {"s": 1e9, "ms": 1e6, "us": 1e3, "ns": 1.0}
@@ -127,7 +127,7 @@ class _Arrays(Handle):
     def write(self, path: str) -> list[str]:
         error = _abi.tactus_error()
         if traces().tactus_arrays_write(self.handle, os.fsencode(path), error):
-            raise Error(error, self.notes[-1] if self.notes else "")
+            raise told(error, self.notes[-1]) if self.notes else Error(error)
         return self.notes
 
 
@@ -148,7 +148,7 @@ def write_arrays(time: Any, poses: Any, wrenches: Any, devices: Any, contacts: A
     objects, forces, hands = _by_name(poses, "object"), _by_name(wrenches, "user"), _by_name(devices, "user")
     if order not in ("wxyz", "xyzw"):
         raise refusal("R-CSV-8", f"order {order!r} is neither 'wxyz' nor 'xyzw'")
-    told: list[str] = []
+    left_out: list[str] = []
     if _is_frame(poses):
         objects = {"object": poses}
     if time is None:
@@ -167,15 +167,18 @@ def write_arrays(time: Any, poses: Any, wrenches: Any, devices: Any, contacts: A
             device, turned = (None, None) if name not in hands else _pose(hands[name], f"devices[{name!r}]", order, rows)
             force = None if name not in forces else _vectors(forces[name], f"wrenches[{name!r}]", _FORCE, (3, 6), rows)
             if name in forces and not _is_frame(forces[name]) and np.shape(forces[name])[1] == 6:
-                told.append(f"{name}: torques are left out")
+                left_out.append(f"{name}: torques are left out")
             arrays.add(traces().tactus_arrays_user, name, device, force)
             if turned is not None:
                 arrays.add(traces().tactus_arrays_device_rotation, name, turned)
         for name, contact in _by_name(contacts, "user").items():
             touched, stiffness, kind = _touched(contact, f"contacts[{name!r}]")
+            for what, wanted, there in (("user", name, {**hands, **forces}), ("object", touched, objects)):
+                if wanted not in there:
+                    raise refusal("R-API-5", f"contacts[{name!r}]: there is no {what} {wanted!r}, but {', '.join(map(repr, there)) or 'none'}")
             call(traces().tactus_arrays_contact, arrays.handle, text_of(name.encode()), text_of(touched.encode()), stiffness, kind,
                  int(name not in hands), subject=name)
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "trace.mcap")
-            told += arrays.write(path)
-            return pathlib.Path(path).read_bytes(), told
+            left_out += arrays.write(path)
+            return pathlib.Path(path).read_bytes(), left_out

@@ -95,7 +95,8 @@ class Shape:
 def _array(values: npt.ArrayLike | None, columns: int, what: str) -> npt.NDArray[np.float64]:
     out = np.ascontiguousarray(values if values is not None else np.empty((0, columns)), np.float64)
     if out.ndim != 2 or out.shape[1] != columns:
-        raise ValueError(f"{what} have shape {out.shape}, not (objects, {columns})")
+        raise ValueError(f"{what} have shape {out.shape}, not (objects, {columns}): a row is x y z [m], w x y z, velocity [m/s] and angular "
+                         "velocity [rad/s]. Where your source has none: the change since the tick before times tick_rate")
     return out
 
 
