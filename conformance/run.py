@@ -23,6 +23,7 @@ from typing import IO, Callable, NamedTuple, NoReturn, Optional, Union
 from packs import Part, unpack, with_repeat
 
 TIMEOUT = 10.0                                              # seconds; per case, each case is a process of its own
+SHOWN = 160                                                 # characters of a wrong line, about the first that differs
 LARGEST_OUTPUT = 64 << 20                                   # bytes; a testee that writes more is stopped
 
 
@@ -160,6 +161,12 @@ def expected_lines(case: Case) -> list[str]:
     return lines
 
 
+def around(line: str, at: int) -> str:
+    """A line of the terminal that holds the character `at`."""
+    begin, end = (0, SHOWN) if at < SHOWN // 2 else (at - SHOWN // 2, at + SHOWN // 2)
+    return "..." * (begin > 0) + line[begin:end] + "..." * (end < len(line))
+
+
 def check_reply(case: Case, status: int, lines: list[str]) -> None:
     if case.error:
         if status != 1:
@@ -172,7 +179,8 @@ def check_reply(case: Case, status: int, lines: list[str]) -> None:
     expected = expected_lines(case)
     for number, (line, wanted) in enumerate(zip(lines, expected), 1):
         if line != wanted:
-            raise Mismatch(f"line {number}:\n  is      {line}\n  must be {wanted}")
+            at = next((i for i, (a, b) in enumerate(zip(line, wanted)) if a != b), min(len(line), len(wanted)))
+            raise Mismatch(f"line {number}, character {at + 1}:\n  is      {around(line, at)}\n  must be {around(wanted, at)}")
     if len(lines) != len(expected):
         raise Mismatch(f"{len(lines)} lines; must be {len(expected)}")
 

@@ -122,6 +122,15 @@ sys.exit(reply.returncode)""")
         out = self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", testee, "--only", "*/003-*")
         self.assertIn("0 lines; must be 1", out)
 
+    def test_long_lines_are_shown_about_their_first_difference(self) -> None:
+        long = '{"header":{"name":"' + "x" * 5000 + '"}}'
+        _, out, _ = self.run_main("--testee", self.command(f"print({long!r})"), "--only", "*/001-*")
+        self.assertIn("FAIL scene/001-", out)
+        self.assertLess(max(map(len, out.splitlines())), 200)
+        with self.assertRaisesRegex(run.Mismatch, "character 4001:\n  is      [.]{3}x+ax+[.]{3}\n  must be [.]{3}x+bx+[.]{3}"), \
+                mock.patch.object(run, "expected_lines", lambda case: ["x" * 4000 + "b" + "x" * 4000]):
+            run.check_reply(mock.Mock(error=None), 0, ["x" * 4000 + "a" + "x" * 4000])
+
     def test_one_line_too_many(self) -> None:
         testee = self.command(f"print({VALID_REPLY!r} + '{{}}')")
         self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", testee, "--only", "*/001-*")
