@@ -161,10 +161,14 @@ def expected_lines(case: Case) -> list[str]:
     return lines
 
 
-def around(line: str, at: int) -> str:
-    """A line of the terminal that holds the character `at`."""
+def difference(number: int, one: str, other: str, names: tuple[str, str] = ("is     ", "must be")) -> str:
+    """Two lines about their first different character, short enough for a terminal."""
+    at = next((i for i, (a, b) in enumerate(zip(one, other)) if a != b), min(len(one), len(other)))
     begin, end = (0, SHOWN) if at < SHOWN // 2 else (at - SHOWN // 2, at + SHOWN // 2)
-    return "..." * (begin > 0) + line[begin:end] + "..." * (end < len(line))
+    text = f"line {number}, character {at + 1}:"
+    for name, line in zip(names, (one, other)):
+        text += f"\n  {name} " + "..." * (begin > 0) + line[begin:end] + "..." * (end < len(line))
+    return text
 
 
 def check_reply(case: Case, status: int, lines: list[str]) -> None:
@@ -175,12 +179,11 @@ def check_reply(case: Case, status: int, lines: list[str]) -> None:
         if error != case.error:
             raise Mismatch(f"rejected with {error}; must be {case.error}")
     elif status != 0:
-        raise Mismatch(f"rejected with {lines[-1] if lines else 'no line'}; must be accepted")
+        raise Mismatch(f"rejected with {lines[-1] if lines else 'exit status 1 and no line of JSON'}; must be accepted")
     expected = expected_lines(case)
     for number, (line, wanted) in enumerate(zip(lines, expected), 1):
         if line != wanted:
-            at = next((i for i, (a, b) in enumerate(zip(line, wanted)) if a != b), min(len(line), len(wanted)))
-            raise Mismatch(f"line {number}, character {at + 1}:\n  is      {around(line, at)}\n  must be {around(wanted, at)}")
+            raise Mismatch(difference(number, line, wanted))
     if len(lines) != len(expected):
         raise Mismatch(f"{len(lines)} lines; must be {len(expected)}")
 
