@@ -13,6 +13,7 @@ import shlex
 import struct
 import sys
 import zlib
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Optional
 
@@ -20,7 +21,7 @@ import decoder
 import session
 from conventions import StreamError
 from file import File
-from run import Crash, load_cases, run_testee
+from run import Crash, difference, load_cases, run_testee
 from session_damage import Scripts, make_script
 
 FIXED = 12                                                  # bytes of the declaration before its body
@@ -105,11 +106,11 @@ def damaged_section(data: bytes, other: bytes, rng: random.Random) -> bytes:
 class Vectors:
     """Files to damage. Those with a fault are the smaller part: most damage hides behind it."""
 
-    def __init__(self, root: Path):
+    def __init__(self, root: Path, only: str):
         cases, faults = load_cases(root)
         if faults:
             raise ValueError(f"{faults[0].id}: {faults[0].detail}")
-        streams = [case for case in cases if "session" not in case.traits]
+        streams = [case for case in cases if "session" not in case.traits and fnmatchcase(case.id, only)]
         self.every = [case.input.read() for case in streams]
         self.valid = [case.input.read() for case in streams if not case.error]
 
@@ -151,7 +152,7 @@ def expected(data: bytes, mode: Optional[str]) -> tuple[int, list[str]]:
     return 0, lines
 
 
-def difference(command: list[str], data: bytes, wanted: tuple[int, list[str]]) -> str:
+def said_otherwise(command: list[str], data: bytes, wanted: tuple[int, list[str]]) -> str:
     """What the testee says that decoder.py does not; empty if they agree."""
     try:
         got = run_testee(command, data)
@@ -161,7 +162,7 @@ def difference(command: list[str], data: bytes, wanted: tuple[int, list[str]]) -
         return ""
     for number, (line, right) in enumerate(zip(got[1], wanted[1]), 1):
         if line != right:
-            return f"line {number}:\n  testee     {line}\n  decoder.py {right}"
+            return difference(number, line, right, ("testee    ", "decoder.py"))
     return f"testee: exit status {got[0]}, {len(got[1])} lines; decoder.py: {wanted[0]}, {len(wanted[1])}"
 
 
@@ -174,7 +175,7 @@ def compare(options: argparse.Namespace, vectors: Vectors) -> int:
         accepted += wanted[0] == 0
         if wanted[0] == 1:
             rules.add(json.loads(wanted[1][-1])["error"]["rule"])
-        said = difference(command + (["--replica", mode] if mode else []), data, wanted)
+        said = said_otherwise(command + (["--replica", mode] if mode else []), data, wanted)
         if said:
             differences += 1
             print(f"case {number} of seed {options.seed}: {said}")
@@ -195,7 +196,7 @@ def compare_sessions(options: argparse.Namespace, scripts: Scripts) -> int:
             said = f"session.py: {error!r}"
             lines = []
         else:
-            said = difference(command, text.encode("ascii"), (0, [json.dumps(line, separators=(",", ":")) for line in lines]))
+            said = said_otherwise(command, text.encode("ascii"), (0, [json.dumps(line, separators=(",", ":")) for line in lines]))
         rules |= {line["error"]["rule"] for line in lines if "error" in line}
         if said:
             differences += 1
@@ -210,6 +211,7 @@ def main(arguments: list[str], root: Path) -> int:
     parser = argparse.ArgumentParser(description="Compare a decoder with decoder.py on damaged vectors.")
     parser.add_argument("--sessions", action="store_true", help="damaged scripts of sessions instead, for both ends")
     parser.add_argument("--testee", metavar="CMD", required=True, help="command line of the decoder")
+    parser.add_argument("--only", metavar="GLOB", default="*", help="damage the vectors whose id matches, as 'rigid/*' (default: all; not with --sessions)")
     parser.add_argument("--cases", type=int, default=1000, help="how many files (default: 1000)")
     parser.add_argument("--first", type=int, default=0, help="number of the first one (default: 0)")
     parser.add_argument("--seed", type=int, default=1, help="another seed damages otherwise (default: 1)")
@@ -218,9 +220,9 @@ def main(arguments: list[str], root: Path) -> int:
     try:
         if options.sessions:
             return compare_sessions(options, Scripts(root))
-        vectors = Vectors(root)
+        vectors = Vectors(root, options.only)
         if not vectors.valid or options.cases < 1:
-            raise ValueError("no vectors or no cases")
+            raise ValueError("no cases" if vectors.valid else f"{options.only}: matches no valid case")
         return compare(options, vectors)
     except (OSError, ValueError, KeyError) as error:
         print(f"differential.py: {error}", file=sys.stderr)

@@ -23,6 +23,7 @@ from typing import IO, Callable, NamedTuple, NoReturn, Optional, Union
 from packs import Part, unpack, with_repeat
 
 TIMEOUT = 10.0                                              # seconds; per case, each case is a process of its own
+SHOWN = 160                                                 # characters of a wrong line, about the first that differs
 LARGEST_OUTPUT = 64 << 20                                   # bytes; a testee that writes more is stopped
 
 
@@ -160,6 +161,16 @@ def expected_lines(case: Case) -> list[str]:
     return lines
 
 
+def difference(number: int, one: str, other: str, names: tuple[str, str] = ("is     ", "must be")) -> str:
+    """Two lines about their first different character, short enough for a terminal."""
+    at = next((i for i, (a, b) in enumerate(zip(one, other)) if a != b), min(len(one), len(other)))
+    begin, end = (0, SHOWN) if at < SHOWN // 2 else (at - SHOWN // 2, at + SHOWN // 2)
+    text = f"line {number}, character {at + 1}:"
+    for name, line in zip(names, (one, other)):
+        text += f"\n  {name} " + "..." * (begin > 0) + line[begin:end] + "..." * (end < len(line))
+    return text
+
+
 def check_reply(case: Case, status: int, lines: list[str]) -> None:
     if case.error:
         if status != 1:
@@ -168,11 +179,11 @@ def check_reply(case: Case, status: int, lines: list[str]) -> None:
         if error != case.error:
             raise Mismatch(f"rejected with {error}; must be {case.error}")
     elif status != 0:
-        raise Mismatch(f"rejected with {lines[-1] if lines else 'no line'}; must be accepted")
+        raise Mismatch(f"rejected with {lines[-1] if lines else 'exit status 1 and no line of JSON'}; must be accepted")
     expected = expected_lines(case)
     for number, (line, wanted) in enumerate(zip(lines, expected), 1):
         if line != wanted:
-            raise Mismatch(f"line {number}:\n  is      {line}\n  must be {wanted}")
+            raise Mismatch(difference(number, line, wanted))
     if len(lines) != len(expected):
         raise Mismatch(f"{len(lines)} lines; must be {len(expected)}")
 

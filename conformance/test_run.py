@@ -117,10 +117,23 @@ sys.stdout.write(reply.stdout[:place].decode() + chr(reply.stdout[place] ^ 1) + 
 sys.exit(reply.returncode)""")
         self.expect(1, "0 passed, 3 failed, 0 skipped", "--testee", testee)
 
+    def test_program_that_only_tells_its_usage(self) -> None:
+        out = self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", self.command("raise SystemExit(1)"), "--only", "*/001-*")
+        self.assertIn("rejected with exit status 1 and no line of JSON; must be accepted", out)
+
     def test_lines_before_an_error_count(self) -> None:
         testee = self.command("""print('{"error":{"errc":"unsupported","rule":"R-FIL-3"}}'); raise SystemExit(1)""")
         out = self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", testee, "--only", "*/003-*")
         self.assertIn("0 lines; must be 1", out)
+
+    def test_long_lines_are_shown_about_their_first_difference(self) -> None:
+        long = '{"header":{"name":"' + "x" * 5000 + '"}}'
+        _, out, _ = self.run_main("--testee", self.command(f"print({long!r})"), "--only", "*/001-*")
+        self.assertIn("FAIL scene/001-", out)
+        self.assertLess(max(map(len, out.splitlines())), 200)
+        with self.assertRaisesRegex(run.Mismatch, "character 4001:\n  is      [.]{3}x+ax+[.]{3}\n  must be [.]{3}x+bx+[.]{3}"), \
+                mock.patch.object(run, "expected_lines", lambda case: ["x" * 4000 + "b" + "x" * 4000]):
+            run.check_reply(mock.Mock(error=None), 0, ["x" * 4000 + "a" + "x" * 4000])
 
     def test_one_line_too_many(self) -> None:
         testee = self.command(f"print({VALID_REPLY!r} + '{{}}')")
@@ -306,6 +319,13 @@ class DifferentialTest(unittest.TestCase):
             status, counts = self.compare(f"env PYTHONPATH={shlex.quote(str(HERE))} {shlex.join([sys.executable, '-c', wrong])}", *more)
             self.assertEqual(status, 1)
             self.assertNotEqual(counts.split(", ")[-1], "0 differences")
+
+    def test_vectors_of_one_stem(self) -> None:
+        chosen = differential.Vectors(HERE, "rigid/*")
+        self.assertIn(len(chosen.every), range(1, len(differential.Vectors(HERE, "*").every)))
+        with contextlib.redirect_stderr(io.StringIO()) as err:
+            self.assertEqual(differential.main(["--testee", "true", "--only", "rigid"], HERE), 2)
+        self.assertEqual(err.getvalue(), "differential.py: rigid: matches no valid case\n")
 
     def test_mended_damage_passes_the_check_values(self) -> None:
         damaged = bytearray(VALID)

@@ -44,7 +44,7 @@ std::vector<float> dent(const tactus::TriMesh& rest, double depth) {
 int main() {
   const tactus::TriMesh rest = sheet();
   const auto scene = tactus::SceneBuilder().deformable("sheet", rest, {.frame_period = kFrame}).build();
-  if (!scene) return std::printf("%s: %s\n", scene.error().object.c_str(), scene.error().error.rule), 1;
+  if (!scene) return std::printf("%s: %s\n", scene.error().object.c_str(), describe(scene.error())), 1;
   auto sender = tactus::Sender::create(*scene);
   auto receiver = tactus::Receiver::create(*scene);
   if (!sender || !receiver) return 1;
@@ -56,7 +56,7 @@ int main() {
     tactus::DeformableTruth truth{.displacements = shape, .touch = {}};
     if (depth > 1e-3) truth.touch = {.triangle = kSide * (kSide + 1), .force = 0.3 * kStiffness * depth, .stiffness = kStiffness};
     const auto sent = sender->encode(tick, {.deformables = {&truth, 1}});
-    if (!sent) return std::printf("%s\n", sent.error().rule), 1;
+    if (!sent) return std::printf("%s\n", describe(sent.error())), 1;
     for (const tactus::Packet& packet : *sent) {
       bytes += packet.bytes.size();
       if (!receiver->push(packet.bytes)) return 1;

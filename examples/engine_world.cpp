@@ -41,7 +41,7 @@ int main() {
   tactus::SceneBuilder builder(60);  // ticks per second
   for (int i = 0; i < kSlots; ++i) builder.rigid("slot " + std::to_string(i), pose_from_engine(kUnity, kParked));
   const auto scene = builder.build();
-  if (!scene) return std::printf("%s\n", scene.error().error.rule), 1;
+  if (!scene) return std::printf("%s: %s\n", scene.error().object.c_str(), describe(scene.error())), 1;
   tactus::SenderOptions options;
   options.triggers.visual_position = 0.005;  // [m]
   auto sender = tactus::Sender::create(*scene, options);
@@ -65,10 +65,10 @@ int main() {
       if (!is_used[i]) truth[i] = parked;  // rests there, and costs nothing
 
     const auto sent = sender->encode(tick, {.objects = truth});
-    if (!sent) return std::printf("tick %d: %s\n", tick, sent.error().rule), 1;
+    if (!sent) return std::printf("tick %d: %s\n", tick, describe(sent.error())), 1;
     for (const tactus::HeldPart& part : sender->held()) {  // mostly none
       ++held;
-      if (part.since == tick) std::printf("tick %d: %s is held, %s\n", tick, name_of(**scene, part).data(), part.rule);
+      if (part.since == tick) std::printf("tick %d: %s is held: %s\n", tick, name_of(**scene, part).data(), describe(part));
     }
     for (const tactus::Packet& packet : *sent) {
       ++packets, bytes += packet.bytes.size();

@@ -8,7 +8,7 @@
 int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "usage: read_trace TRACE.mcap\n"), 2;
   auto reader = tactus::TraceReader::open(argv[1]);
-  if (!reader) return std::fprintf(stderr, "%s: %s\n", argv[1], reader.error().rule), 1;
+  if (!reader) return std::fprintf(stderr, "%s: %s\n", argv[1], describe(reader.error())), 1;
   const tactus::TraceInfo info = reader->info();
   std::vector<double> way(info.objects.size());
   std::vector<tactus::Vec3> last(info.objects.size());
@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   tactus::TraceFrame frame;
   for (int ticks = 0;; ++ticks) {
     const auto more = reader->next(frame);
-    if (!more) return std::fprintf(stderr, "%s: %s\n", argv[1], more.error().rule), 1;
+    if (!more) return std::fprintf(stderr, "%s: %s\n", argv[1], describe(more.error())), 1;
     if (!*more) break;
     for (std::size_t i = 0; i < way.size(); ++i) {
       const tactus::Vec3& at = frame.objects[i].pose.position;

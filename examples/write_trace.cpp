@@ -23,6 +23,6 @@ int main(int argc, char** argv) {
   arrays.contacts.push_back({.user = "hand", .object = "cup", .stiffness = 500, .at = tactus::ForcePoint::origin});
   tactus::ReadNotes notes;  // what was decided: missing samples, times off the grid
   const auto written = tactus::write_arrays(arrays, argv[1], notes);
-  if (!written) return std::fprintf(stderr, "%s: %s\n", argv[1], written.error().rule), 1;
+  if (!written) return std::fprintf(stderr, "%s: %s\n", argv[1], describe(written.error())), 1;
   std::printf("%llu ticks, %zu notes\n", static_cast<unsigned long long>(written->count()), notes.all().size());
 }

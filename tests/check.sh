@@ -77,7 +77,7 @@ consumer() { # BUILD_DIR
   cmake --install "$1" --prefix "$prefix" >/dev/null
   check_headers "$prefix/include/tactus"
   for component in codec seal modes surface fem sim falcon hid c c_trace; do
-    installed "$component" || continue
+    installed "$component" || { check_absent "$component"; continue; }
     cmake -S tests/consumer/installed -B "$scratch/$component" -DCOMPONENT="$component" -DCMAKE_PREFIX_PATH="$prefix"
     cmake --build "$scratch/$component"
     set --
@@ -102,6 +102,12 @@ consumer() { # BUILD_DIR
 
 install_rules() { # BUILD_DIR
   find "$1" -name cmake_install.cmake -exec cat {} + | grep -c 'file(INSTALL' || true
+}
+
+check_absent() { # COMPONENT
+  if refused=$(cmake -S tests/consumer/installed -B "$scratch/absent" -DCOMPONENT="$1" -DCMAKE_PREFIX_PATH="$prefix" 2>&1); then die "$1 is found, and is not installed"; fi
+  echo "$refused" | tr -s ' \n' ' ' | grep -qE "Component $1 is not in this installation.* -DTACTUS_WITH_[A-Z0-9]+=ON" || die "who wants $1 is not told how to get it"
+  rm -rf "$scratch/absent"
 }
 
 installed() { # COMPONENT

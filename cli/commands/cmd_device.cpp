@@ -29,13 +29,14 @@ struct DevicesOptions {
 struct Kind {
   std::string name, title;
   device::Backend::Listing listing;
+  bool is_hardware = false;
 };
 
 /// What needs no hardware stands first.
 std::vector<Kind> look() {
   std::vector<Kind> kinds{{"virtual", "A simulated hand: virtual, or virtual:SCENE", {}},
                           {"replay", "The hand of a recording: replay:TRACE", {}}};
-  for (const auto& backend : backends()) kinds.push_back({backend->name(), backend->title(), backend->list()});
+  for (const auto& backend : backends()) kinds.push_back({backend->name(), backend->title(), backend->list(), true});
   return kinds;
 }
 
@@ -51,8 +52,11 @@ Value value_of(const std::vector<Kind>& kinds, const device::RealTime& real_time
                          {"nominal_force_N", can.nominal_force},
                          {"rate_Hz", can.rate},
                          {"only_reports", can.report_descriptor.has_value()}});
-    out["backends"].push_back(
-        {{"name", kind.name}, {"title", kind.title}, {"devices", std::move(devices)}, {"missing", kind.listing.missing}});
+    Json backend{{"name", kind.name}, {"title", kind.title}};
+    if (kind.is_hardware && kind.listing.missing.empty()) backend["connected"] = !devices.empty();
+    backend["devices"] = std::move(devices);
+    backend["missing"] = kind.listing.missing;
+    out["backends"].push_back(std::move(backend));
   }
   for (const device::Privilege& privilege : real_time.privileges())
     out["privileges"].push_back({{"name", privilege.name}, {"granted", privilege.granted}, {"remedy", privilege.remedy}});

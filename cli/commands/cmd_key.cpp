@@ -64,8 +64,11 @@ Outcome add(const KeyOptions& options) {
   }
   const bool was_key = seal::Key::read(options.list).has_value();
   if (list.find(options.add) != nullptr)
-    return refuse(fmt::format("{}: it has a user \"{}\" already", shown_path(options.list), options.add),
-                  "Choose another name, or remove that user first: --remove " + options.add + ".");
+    return refuse(
+        fmt::format("{}: it has a user \"{}\" already", shown_path(options.list), options.add),
+        fmt::format("Choose another name, or remove that user first: --remove {}. To change a role, write touch or observe "
+                    "in the user's line of {}.",
+                    options.add, shown_path(options.list)));
   const std::string path = options.output.empty() ? options.add + ".key" : options.output;
   const auto whole = [&](const std::string& name) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(name, ignored), ignored);
@@ -160,6 +163,7 @@ void setup_key(Command& app, Action& action) {
       "  tactus serve rotate-push-lift --listen 192.0.2.1:7447 --key lab.keys\n"
       "  tactus join 192.0.2.1:7447 --key anna.key --scene rotate-push-lift        # on her machine\n"
       "  tactus key lab.keys --remove ben\n"
+      "A role is a word of the user's line in lab.keys: change it there, and the key stays.\n"
       "One key for all, who are equal then:\n"
       "  tactus key -o lab.key --name lab\n"
       "  tactus serve rotate-push-lift --listen 192.0.2.1:7447 --key lab.key");

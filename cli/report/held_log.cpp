@@ -14,8 +14,6 @@ bool is_same(const HeldPart& a, const HeldPart& b) noexcept {
   return a.part == b.part && a.index == b.index && a.since == b.since;
 }
 
-Error error_of(const HeldPart& held) noexcept { return {.code = Errc::invalid_argument, .rule = held.rule, .bit_offset = 0}; }
-
 const char* what_happens(TruthPart part) noexcept {
   switch (part) {
     case TruthPart::object:
@@ -40,7 +38,7 @@ std::string text_of(const Scene& scene, const HeldPart& held) {
   const std::string reach = held.rule == std::string_view("R-API-2")
                                 ? fmt::format("; positions reach {:.4g} m", std::ldexp(1.0, 31 - scene.grid.position))
                                 : std::string();
-  return fmt::format("{}{}: {} ({}{})", who, of, describe(error_of(held)), held.rule, reach);
+  return fmt::format("{}{}: {} ({}{})", who, of, describe(held), held.rule, reach);
 }
 
 void HeldLog::look(std::int64_t tick, std::span<const HeldPart> held) {
@@ -70,7 +68,7 @@ std::vector<std::string> HeldLog::lines(const Scene& scene) const {
   for (const Run& run : runs_) {
     if (out.size() == kMost) break;
     out.push_back(fmt::format("{}: {} from tick {} to {}. {}", text_of(scene, run.held), what_happens(run.held.part),
-                              run.held.since, run.last == kGoesOn ? tick_ : run.last, remedy(error_of(run.held))));
+                              run.held.since, run.last == kGoesOn ? tick_ : run.last, remedy(run.held)));
   }
   if (runs_.size() > kMost) out.push_back(fmt::format("{} more were held or left out", runs_.size() - kMost));
   return out;

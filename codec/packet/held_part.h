@@ -22,7 +22,10 @@ struct HeldPart {
   TruthPart part = TruthPart::object;
   std::uint32_t index = 0;  ///< into the part's span of Truth
   std::int64_t since = 0;   ///< [ticks] the first of those in a row that break a rule
-  const char* rule = "";    ///< R-API-1, 2, 3, 6 or 15: describe() and remedy() of it are its text
+  const char* rule = "";    ///< R-API-1, 2, 3, 6 or 15
+
+  /// Why, for describe() and remedy().
+  operator Error() const noexcept { return {.code = Errc::invalid_argument, .rule = rule, .bit_offset = 0}; }
 };
 
 /// Name of the object that is concerned; empty: of a contact, which may name no object.

@@ -256,6 +256,11 @@ TEST(Diagnostic, IsPlaceRuleFaultAndRemedy) {
   EXPECT_EQ(place_of(full), "line 3, step 0, triangle 17, 'x'");
 }
 
+TEST(Diagnostic, FileThatTheSystemNamesTooStandsOnce) {
+  const Diagnostic missing{.error = {Errc::invalid, "R-SRF-11", 0}, .file = "libHD.so", .detail = "libHD.so: cannot open"};
+  EXPECT_TRUE(to_string(missing).starts_with("libHD.so: cannot open: R-SRF-11: ")) << to_string(missing);
+}
+
 TEST(Diagnostic, ItsOwnRemedyGoesBeforeThatOfTheRule) {
   const Error error{Errc::invalid, "R-SRF-11", 0};
   EXPECT_EQ(to_string(Diagnostic{.error = error, .remedy = "Look at it."}),

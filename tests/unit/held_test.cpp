@@ -107,6 +107,9 @@ TEST(Held, OneBadObjectDoesNotStopTheOthers) {
                 << held.index << " " << held.since;
             EXPECT_EQ(held.rule, wrong.rule);
             EXPECT_EQ(name_of(*scene, held), "object 4");
+            EXPECT_STREQ(describe(held), describe(Error{Errc::invalid_argument, wrong.rule.data(), 0}));
+            EXPECT_STRNE(describe(held), describe(Error{}));
+            EXPECT_STRNE(remedy(held), "");
           }
           for (std::uint32_t i = 0; i < Roundabout::kObjects; ++i) {
             const Vec3 shown = to_pose(receiver.replica().pose(i, tick), scene->grid.position).position;
