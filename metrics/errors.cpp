@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tactus/rigid/rigid_state.h>
+
 namespace tactus {
 
 void ErrorSeries::add(double error, bool over) noexcept {
@@ -49,11 +51,13 @@ bool ErrorMetrics::is_perceptible(double force, double error) const noexcept {
   return error > perceptual_fraction(force) * std::max(force, bounds_.force_floor);
 }
 
-void ErrorMetrics::add(const TraceFrame& truth, std::span<const Pose> shown) noexcept {
+void ErrorMetrics::add(const TraceFrame& truth, std::span<const Pose> shown, std::span<const std::uint8_t> levels) noexcept {
   for (const std::uint32_t i : moving_) {
+    const int level = levels.empty() ? 0 : levels[i];
+    if (level == kOutOfInterest) continue;
     const Pose& pose = truth.objects[i].pose;
-    const double distance = norm(shown[i].position - pose.position);
-    const double angle = angle_between(pose.rotation, shown[i].rotation);
+    const double distance = std::ldexp(norm(shown[i].position - pose.position), -level);
+    const double angle = std::ldexp(angle_between(pose.rotation, shown[i].rotation), -level);
     position_.add(distance, distance > bounds_.visual_position);
     rotation_.add(angle, angle > bounds_.visual_rotation);
   }

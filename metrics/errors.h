@@ -40,8 +40,10 @@ class ErrorMetrics {
   ErrorMetrics(const TraceInfo& info, const RigidTriggers& bounds);
 
   /// in   shown  one pose per object
+  ///      levels  their levels of detail, as in Replica::lod: an error counts as a 2^level-th of itself, none of what is out of interest;
+  ///              empty: the scene has no interest
   /// time O(objects + users), no allocation.
-  void add(const TraceFrame& truth, std::span<const Pose> shown) noexcept;
+  void add(const TraceFrame& truth, std::span<const Pose> shown, std::span<const std::uint8_t> levels = {}) noexcept;
   /// Also compare the force rendered at the client with the server's (closed loop only).
   void add_rendered(const TraceFrame& truth) noexcept;
 

@@ -222,6 +222,15 @@ NetworkJudge::NetworkJudge(const TraceInfo& info, const sim::Scene& scene, const
   }
 }
 
+/// Of each object at a client; empty in a scene without interest.
+std::span<const std::uint8_t> NetworkJudge::levels_at(Receiver& receiver, std::int64_t tick) {
+  const Scene& scene = *receiver.scene();
+  if (!scene.interest) return {};
+  levels_.assign(info_.objects.size(), 0);
+  for (const std::uint32_t object : scene.moving()) levels_[object] = receiver.replica().lod(object, tick);
+  return levels_;
+}
+
 void NetworkJudge::add(const sim::Simulation& simulation, sim::SessionNetwork& network) {
   const TraceFrame& now = simulation.frame();
   past_.add(now);
@@ -242,7 +251,8 @@ void NetworkJudge::add(const sim::Simulation& simulation, sim::SessionNetwork& n
       continue;
     }
     for (PlayedShapes& shapes : user.shapes) shapes.look(network.client(i).receiver()->replica(), truth->tick);
-    if (std::exchange(user.judged, truth->tick) < truth->tick) report.errors.add(*truth, simulation.received_poses(i));
+    if (std::exchange(user.judged, truth->tick) < truth->tick)
+      report.errors.add(*truth, simulation.received_poses(i), levels_at(*network.client(i).receiver(), truth->tick));
     report.delay_sum += 1e-3 * static_cast<double>(now.tick - truth->tick);
     ++report.shown;
   }

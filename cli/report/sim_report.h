@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,14 +12,14 @@
 #include "cli/options/options_codec.h"
 #include "cli/report/report.h"
 
-namespace tactus::sim {
-struct RigidErrors;
-struct Scene;
-class Simulation;
-}  // namespace tactus::sim
+namespace tactus {
+class Receiver;
+}
 
 namespace tactus::sim {
 struct NetworkOptions;
+struct RigidErrors;
+struct Scene;
 class SessionNetwork;
 class Simulation;
 }  // namespace tactus::sim
@@ -61,10 +62,13 @@ class NetworkJudge {
     std::vector<PlayedShapes> shapes{};  // of each deformable object
     std::int64_t judged = -1;            // last tick
   };
+  std::span<const std::uint8_t> levels_at(Receiver& receiver, std::int64_t tick);
+
   bool compensates_;
   PastFrames past_;
   const TraceInfo& info_;
   std::vector<User> users_;
+  std::vector<std::uint8_t> levels_;
 };
 
 }  // namespace tactus::cli

@@ -217,7 +217,7 @@ TEST(Held, AContactOfAHeldObjectDoesNotCount) {
   std::size_t packets = 0;
   for (std::int64_t tick = 0; tick < 300; ++tick) {
     const bool is_bad = tick >= 100 && tick < 200;
-    body.pose.position.x = is_bad ? kNan : 2e-3 * std::sin(0.05 * static_cast<double>(std::min<std::int64_t>(tick, 99)));
+    body.pose.position.z = is_bad ? kNan : 2e-3 * std::sin(0.05 * static_cast<double>(std::min<std::int64_t>(tick, 99)));
     if (!is_bad) last = body.pose;
     const Contact contact = testing::touch(0, last, 1e-4);
     const std::size_t touches = tick < 120 ? 0 : 1;

@@ -92,6 +92,22 @@ TEST(ErrorMetrics, MeasuresPoseAndContactForce) {
   EXPECT_NEAR(fidelity.worst_haptic_ratio(), 0.2 / 0.08, 1e-9);
 }
 
+TEST(ErrorMetrics, BoundsWidenWithTheLevelOfDetail) {
+  ErrorMetrics fidelity(one_cube(), {.visual_position = 0.006, .haptic = HapticRule::off});
+  TraceFrame frame = pressed(0, 0.1);
+  const auto add = [&](double by, std::uint8_t level) {
+    fidelity.add(frame, std::array{moved(frame, {by, 0, 0}), Pose{}}, std::array{level, std::uint8_t{0}});
+    ++frame.tick;
+  };
+  add(0.011, 1);
+  add(0.013, 1);  // over
+  add(0.190, 5);
+  add(9, kOutOfInterest);
+  EXPECT_EQ(fidelity.position().ticks(), 3u);
+  EXPECT_EQ(fidelity.position().ticks_over(), 1u);
+  EXPECT_NEAR(fidelity.position().max(), 0.0065, 1e-12);
+}
+
 TEST(ErrorMetrics, FixedRuleCountsOnlyInContact) {
   ErrorMetrics fidelity(one_cube(), {.haptic = HapticRule::fixed, .fixed_position = 0.0015});
   TraceFrame frame = pressed(0, 0);
