@@ -41,8 +41,12 @@ std::string to_string(const Diagnostic& diagnostic) {
   std::string file = shown_path(diagnostic.file);
   if (diagnostic.line > 0) file += ':' + std::to_string(diagnostic.line);
   std::string out = file.empty() ? "" : file + ": ";
-  for (const std::string& part : parts_of(diagnostic))
-    if (!part.empty()) out = part.starts_with(out) ? part + ": " : out + part + ": ";  // a system's text may begin with the file
+  for (const std::string& part : parts_of(diagnostic)) {
+    if (part.empty()) continue;
+    if (part.starts_with(out)) out.clear();  // a system's text may begin with the file
+    out += part;
+    out += ": ";
+  }
   out += diagnostic.error.rule + std::string(": ") +
          (diagnostic.cause.empty() ? describe(diagnostic.error) : shown(diagnostic.cause, kMostOfRemedy));
   const std::string mend = as_clause(diagnostic.remedy.empty() ? remedy(diagnostic.error) : diagnostic.remedy);
