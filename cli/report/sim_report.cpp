@@ -222,12 +222,11 @@ NetworkJudge::NetworkJudge(const TraceInfo& info, const sim::Scene& scene, const
   }
 }
 
-/// Of each object at a client; empty in a scene without interest.
-std::span<const std::uint8_t> NetworkJudge::levels_at(Receiver& receiver, std::int64_t tick) {
-  const Scene& scene = *receiver.scene();
-  if (!scene.interest) return {};
+/// Of each object at a client; empty in a scene without interest, or while the client has no declaration.
+std::span<const std::uint8_t> NetworkJudge::levels_at(Receiver* receiver, std::int64_t tick) {
+  if (receiver == nullptr || !receiver->scene()->interest) return {};
   levels_.assign(info_.objects.size(), 0);
-  for (const std::uint32_t object : scene.moving()) levels_[object] = receiver.replica().lod(object, tick);
+  for (const std::uint32_t object : receiver->scene()->moving()) levels_[object] = receiver->replica().lod(object, tick);
   return levels_;
 }
 
@@ -252,7 +251,7 @@ void NetworkJudge::add(const sim::Simulation& simulation, sim::SessionNetwork& n
     }
     for (PlayedShapes& shapes : user.shapes) shapes.look(network.client(i).receiver()->replica(), truth->tick);
     if (std::exchange(user.judged, truth->tick) < truth->tick)
-      report.errors.add(*truth, simulation.received_poses(i), levels_at(*network.client(i).receiver(), truth->tick));
+      report.errors.add(*truth, simulation.received_poses(i), levels_at(network.client(i).receiver(), truth->tick));
     report.delay_sum += 1e-3 * static_cast<double>(now.tick - truth->tick);
     ++report.shown;
   }

@@ -62,7 +62,7 @@ class NetworkJudge {
     std::vector<PlayedShapes> shapes{};  // of each deformable object
     std::int64_t judged = -1;            // last tick
   };
-  std::span<const std::uint8_t> levels_at(Receiver& receiver, std::int64_t tick);
+  std::span<const std::uint8_t> levels_at(Receiver* receiver, std::int64_t tick);
 
   bool compensates_;
   PastFrames past_;
