@@ -152,7 +152,7 @@ def expected(data: bytes, mode: Optional[str]) -> tuple[int, list[str]]:
     return 0, lines
 
 
-def said_otherwise(command: list[str], data: bytes, wanted: tuple[int, list[str]]) -> str:
+def first_difference(command: list[str], data: bytes, wanted: tuple[int, list[str]]) -> str:
     """What the testee says that decoder.py does not; empty if they agree."""
     try:
         got = run_testee(command, data)
@@ -175,7 +175,7 @@ def compare(options: argparse.Namespace, vectors: Vectors) -> int:
         accepted += wanted[0] == 0
         if wanted[0] == 1:
             rules.add(json.loads(wanted[1][-1])["error"]["rule"])
-        said = said_otherwise(command + (["--replica", mode] if mode else []), data, wanted)
+        said = first_difference(command + (["--replica", mode] if mode else []), data, wanted)
         if said:
             differences += 1
             print(f"case {number} of seed {options.seed}: {said}")
@@ -196,7 +196,7 @@ def compare_sessions(options: argparse.Namespace, scripts: Scripts) -> int:
             said = f"session.py: {error!r}"
             lines = []
         else:
-            said = said_otherwise(command, text.encode("ascii"), (0, [json.dumps(line, separators=(",", ":")) for line in lines]))
+            said = first_difference(command, text.encode("ascii"), (0, [json.dumps(line, separators=(",", ":")) for line in lines]))
         rules |= {line["error"]["rule"] for line in lines if "error" in line}
         if said:
             differences += 1

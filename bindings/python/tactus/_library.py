@@ -70,10 +70,10 @@ def refusal(rule: str, subject: str, name: str = "TACTUS_INVALID_ARGUMENT") -> E
     """An error that Python finds."""
     error = _abi.tactus_error()
     error.status, error.rule = getattr(_abi, name), rule.encode()
-    return told(error, subject)
+    return refusal_for(error, subject)
 
 
-def told(error: Any, finding: str) -> Error:
+def refusal_for(error: Any, finding: str) -> Error:
     """An error whose finding says all: the text of its rule, which covers other cases too, is left out."""
     plain = Error(error, finding)
     return Error(error, finding, f"{finding} ({plain.name}, {plain.rule}). {plain.remedy}".rstrip())

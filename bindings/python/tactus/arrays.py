@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import Error, Handle, call, refusal, text_of, told, traces
+from ._library import Error, Handle, call, refusal, refusal_for, text_of, traces
 
 NO_TIME = -(1 << 63)
 _UNITS = {"s": 1e9, "ms": 1e6, "us": 1e3, "ns": 1.0}
@@ -127,7 +127,7 @@ class _Arrays(Handle):
     def write(self, path: str) -> list[str]:
         error = _abi.tactus_error()
         if traces().tactus_arrays_write(self.handle, os.fsencode(path), error):
-            raise told(error, self.notes[-1]) if self.notes else Error(error)
+            raise refusal_for(error, self.notes[-1]) if self.notes else Error(error)
         return self.notes
 
 
