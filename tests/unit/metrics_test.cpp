@@ -93,19 +93,24 @@ TEST(ErrorMetrics, MeasuresPoseAndContactForce) {
 }
 
 TEST(ErrorMetrics, BoundsWidenWithTheLevelOfDetail) {
-  ErrorMetrics fidelity(one_cube(), {.visual_position = 0.006, .haptic = HapticRule::off});
+  ErrorMetrics fidelity(one_cube(), {.visual_position = 0.006, .visual_rotation = 0.03, .haptic = HapticRule::off});
   TraceFrame frame = pressed(0, 0.1);
-  const auto add = [&](double by, std::uint8_t level) {
-    fidelity.add(frame, std::array{moved(frame, {by, 0, 0}), Pose{}}, std::array{level, std::uint8_t{0}});
+  const auto add = [&](double by, double angle, std::uint8_t level) {
+    Pose shown = moved(frame, {by, 0, 0});
+    shown.rotation = {std::cos(angle / 2), 0, 0, std::sin(angle / 2)};
+    fidelity.add(frame, std::array{shown, Pose{}}, std::array{level, std::uint8_t{0}});
     ++frame.tick;
   };
-  add(0.011, 1);
-  add(0.013, 1);  // over
-  add(0.190, 5);
-  add(9, kOutOfInterest);
-  EXPECT_EQ(fidelity.position().ticks(), 3u);
-  EXPECT_EQ(fidelity.position().ticks_over(), 1u);
+  add(0.011, 0.05, 1);
+  add(0.013, 0.07, 1);  // both over
+  add(0.190, 0.90, 5);
+  add(9, 3, kOutOfInterest);
+  for (const ErrorSeries* series : {&fidelity.position(), &fidelity.rotation()}) {
+    EXPECT_EQ(series->ticks(), 3u);
+    EXPECT_EQ(series->ticks_over(), 1u);
+  }
   EXPECT_NEAR(fidelity.position().max(), 0.0065, 1e-12);
+  EXPECT_NEAR(fidelity.rotation().max(), 0.035, 1e-9);
 }
 
 TEST(ErrorMetrics, FixedRuleCountsOnlyInContact) {
