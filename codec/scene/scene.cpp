@@ -9,9 +9,9 @@
 #include <tactus/base/fixed.h>
 #include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
-#include <tactus/deformable/basis.h>
-#include <tactus/deformable/graph.h>
-#include <tactus/elastic/elastic_elements.h>
+#include <tactus/mesh/basis.h>
+#include <tactus/mesh/elastic_elements.h>
+#include <tactus/mesh/graph.h>
 #include <tactus/scene/elastic_syntax.h>
 #include <tactus/scene/scene_rules.h>
 

@@ -9,7 +9,7 @@
 
 #include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
-#include <tactus/elastic/elastic_elements.h>
+#include <tactus/mesh/elastic_elements.h>
 #include <tactus/scene/scene_rules.h>
 
 namespace tactus {
@@ -349,6 +349,19 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
   return refuse(scene.error(), {}, is_too_large ? too_many(counts, limits) : std::string());
 } catch (const std::bad_alloc&) {
   return tl::make_unexpected(SceneFinding{out_of_memory().value(), {}});
+}
+
+Result<SharedScene> device_scene(const SceneSpec& scene) {
+  constexpr double kReach = 0.1;  // [s]: a device that is not heard of stands still then
+  auto built = SceneBuilder(scene.tick_rate)
+                   .rigid("device")
+                   .rigid_profile(RigidProfile::thesis)
+                   .grid(scene.grid)
+                   .extrapolate(kReach)
+                   .baselines(64)
+                   .build();
+  if (!built) return tl::unexpected(built.error().error);
+  return *built;
 }
 
 }  // namespace tactus

@@ -150,4 +150,7 @@ class SceneBuilder {
   std::optional<Promise> promise_;
 };
 
+/// The scene of a device that moves in `scene`, one rigid object; its orientation is coded, too. spec/65-signal.md section 2
+Result<SharedScene> device_scene(const SceneSpec& scene);
+
 }  // namespace tactus
