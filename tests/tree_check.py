@@ -74,6 +74,7 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "codec/deformable/thesis_syntax": "deformable_encoder",
     "codec/elastic": "elastic",
     "codec/file": "packet",
+    "codec/mesh_support": "deformable_decoder",
     "codec/load/load_decoder": "load",
     "codec/load/load_encoder": "load",
     "codec/load/load_state": "load",

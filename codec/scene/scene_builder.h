@@ -141,7 +141,10 @@ class SceneBuilder {
   RigidProfile rigid_profile_ = RigidProfile::main;
   std::vector<Rigid> rigid_;
   std::vector<Deformable> deformables_;
-  bool is_of_nothing_ = false;  // driven() or elastic() came before any such object
+  struct MeshParts;
+  static const MeshParts kMeshParts;
+  const MeshParts* meshes_ = nullptr;  // what deformable() needs: a program that never calls it does not link that
+  bool is_of_nothing_ = false;         // driven() or elastic() came before any such object
   struct Promise {
     RigidTriggers rigid;
     DeformableThresholds deformables;
