@@ -204,7 +204,7 @@ run_site() {
 
 run_format() {
   install clang-format
-  find codec io metrics sim device cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -exec clang-format -i {} +
+  find codec session io metrics sim device cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -exec clang-format -i {} +
 }
 
 case ${1-help} in

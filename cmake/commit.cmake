@@ -2,7 +2,7 @@
 # cmake -D SOURCE=... -D OUTPUT=commit.h -P commit.cmake: the commit that is built and its day, empty outside of a checkout of our own.
 # Where what the program is built from differs from the commit, "-dirty-" and the first digits of a digest of the differences follow.
 cmake_minimum_required(VERSION 3.22)
-set(built_from CMakeLists.txt CMakePresets.json cmake codec io metrics sim device cli bindings spec)
+set(built_from CMakeLists.txt CMakePresets.json cmake codec session io metrics sim device cli bindings spec)
 find_package(Git QUIET)
 
 # Sets `out` to the lines that git prints as a list, and to FAILED where it fails.

@@ -69,11 +69,11 @@ function(tactus_debian_packages out)
 endfunction()
 
 # tactus_missing(OUT required...): Debian packages or components of ours that are needed and not there; empty when all is well.
-# What is required is a component of ours (trace, net, fem, surface, sim, device, wasm, c) or a name from TACTUS_PACKAGES.
+# What is required is a component of ours (session, trace, net, fem, surface, sim, device, wasm, c) or a name from TACTUS_PACKAGES.
 function(tactus_missing out)
   set(missing)
   foreach(required IN LISTS ARGN)
-    if(required MATCHES "^(trace|net|seal|tets|fem|surface|sim|device|wasm|c)$")
+    if(required MATCHES "^(session|trace|net|seal|tets|fem|surface|sim|device|wasm|c)$")
       if(NOT TARGET tactus_${required})
         string(TOUPPER ${required} upper)
         list(APPEND missing "TACTUS_WITH_${upper}")
@@ -114,7 +114,7 @@ function(tactus_component name dir)
 endfunction()
 
 # The components that are libraries, in the order in which they build on one another.
-set(TACTUS_LIBRARIES codec trace net seal metrics tets modes surface fem sim device falcon hid openhaptics inverse3 c c_trace)
+set(TACTUS_LIBRARIES codec session trace net seal metrics tets modes surface fem sim device falcon hid openhaptics inverse3 c c_trace)
 
 # tactus_components(BUILT LEFT_OUT): the libraries that are there and those that are not.
 function(tactus_components built left_out)

@@ -7,11 +7,11 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_decoder.h>
-#include <tactus/elastic/driven_shape.h>
 #include <tactus/load/load_decoder.h>
 #include <tactus/packet/substream.h>
 #include <tactus/packet/substream_decoder.h>
 #include <tactus/rigid/rigid_decoder.h>
+#include <tactus/scene/mesh_support.h>
 
 namespace tactus {
 
@@ -27,7 +27,7 @@ struct Receiver::Impl {
   using Decoders = std::vector<std::unique_ptr<DeformableDecoder>>;
   static Decoders decoders(const Scene& scene, const DecodeLimits& limits) {
     Decoders out;
-    for (std::size_t i = 0; i < scene.deformables.size(); ++i) out.push_back(DeformableDecoder::create(scene, i, limits));
+    for (std::size_t i = 0; i < scene.deformables.size(); ++i) out.push_back(scene.mesh_support()->decoder(scene, i, limits));
     return out;
   }
   static std::vector<DeformableDecoder*> shapes(const Decoders& decoders) {
@@ -99,7 +99,7 @@ void Receiver::know(std::shared_ptr<const DevicePath> path) {
   const Scene& scene = *impl_->scene;
   for (std::size_t i = 0; i < scene.deformables.size(); ++i)
     if (const DeformableObject& object = scene.deformables[i]; object.body)
-      impl_->deformables[i]->know(std::make_unique<DrivenShape>(scene, object, *impl_->path));
+      scene.mesh_support()->follow(*impl_->deformables[i], scene, object, *impl_->path);
 }
 
 Replica& Receiver::replica() noexcept { return impl_->replica; }

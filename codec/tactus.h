@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Scenes, packets and streams of tactus::codec; sessions over a network have headers of their own (session/). A Sender turns true
-/// states into packets; a Receiver turns packets into a replica:
+/// Scenes, packets and streams of tactus::codec; sessions over a network are tactus::session (session/). A Sender turns true states
+/// into packets; a Receiver turns packets into a replica:
 ///
 ///   #include <cstdio>
 ///   #include <tactus/tactus.h>

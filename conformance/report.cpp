@@ -16,8 +16,8 @@
 #include <tactus/file/stream_file.h>
 #include <tactus/packet/substream.h>
 #include <tactus/receiver.h>
+#include <tactus/rigid/device_path.h>
 #include <tactus/scene/elastic_syntax.h>
-#include <tactus/signal/device_path.h>
 
 namespace tactus::conformance {
 namespace {

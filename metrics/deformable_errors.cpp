@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <tactus/deformable/displacement.h>
-#include <tactus/deformable/graph.h>
+#include <tactus/mesh/graph.h>
 
 namespace tactus {
 

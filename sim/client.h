@@ -11,7 +11,7 @@
 
 #include <tactus/client/stiffness_reduction.h>
 #include <tactus/receiver.h>
-#include <tactus/signal/device_signal.h>
+#include <tactus/session/device_signal.h>
 #include <tactus/sim/deformable/deformable_probes.h>
 #include <tactus/sim/msd/msd_objects.h>
 #include <tactus/sim/prediction/prediction.h>

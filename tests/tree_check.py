@@ -11,28 +11,29 @@ import subprocess
 import sys
 import tempfile
 
-SOURCE_DIRS = (".ci", "spec", "codec", "io", "metrics", "sim", "device", "bindings", "cli", "conformance", "lab", "tests", "tools", "cmake")
+SOURCE_DIRS = (".ci", "spec", "codec", "session", "io", "metrics", "sim", "device", "bindings", "cli", "conformance", "lab", "tests", "tools", "cmake")
 CODE = {".h", ".cpp"}
 SOURCES = CODE | {".py", ".sh", ".cmake", ".mjs", ".js", ".lua"}
 ROOT = {".ci", ".clang-format", ".clang-tidy", ".github", ".gitignore", "CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "CMakePresets.json",
         "CODE_OF_CONDUCT.md", "CONTRIBUTING.md", "LICENSE", "README.md", "SECURITY.md", "bindings", "cli", "cmake", "codec", "conformance", "device", "docs",
-        "examples", "go", "io", "lab", "metrics", "reports", "sim", "spec", "tests", "tools"}
-LAYERS = ("codec", "io", "metrics", "sim", "device", "cli")  # each includes nothing of those behind it; what stands beside them is included by nobody
+        "examples", "go", "io", "lab", "metrics", "reports", "session", "sim", "spec", "tests", "tools"}
+LAYERS = ("codec", "session", "io", "metrics", "sim", "device", "cli")  # each includes nothing of those behind it; what stands beside them is included by nobody
 MAX_LINES = 600
 ONE_FILE = {".lua"}  # what users copy to install it: may be longer
-SHARED = {"base"}  # folders of codec/ that are not subjects of the specification
-# Everything else in codec/ is integers: what both ends compute is the same on every machine. These files are doors: SI units come in
+SHARED = {"base", "mesh"}  # folders of codec/ that are not subjects of the specification
+# Everything else in codec/ and session/ is integers: what both ends compute is the same on every machine. These files are doors: SI units come in
 # or go out, a sender decides what to send, options are read once, a quotient of integers is estimated and then corrected, and the
 # basis and the elastic bodies that both ends compute are binary64 in a written order.
-FLOATS = {"base/elementary", "base/geometry", "base/quantise", "base/tri_mesh", "client/replica", "client/stiffness_reduction", "deformable/basis",
-          "deformable/cluster_basis", "deformable/deformable_encoder", "deformable/displacement", "deformable/encoder_fit", "deformable/kriging",
-          "deformable/motion_clusters", "deformable/spring_basis", "deformable/thesis_encoder", "deformable/vertex_coder", "elastic/driven_shape",
-          "elastic/elastic_elements", "elastic/elastic_solver", "elastic/elastic_touch", "load/load_encoder", "load/load_state", "packet/sender_policy",
+FLOATS = {"base/elementary", "base/geometry", "base/quantise", "base/tri_mesh", "client/replica", "client/stiffness_reduction",
+          "deformable/deformable_encoder", "deformable/displacement", "deformable/encoder_fit",
+          "deformable/motion_clusters", "deformable/thesis_encoder", "deformable/vertex_coder", "elastic/driven_shape",
+          "elastic/elastic_solver", "elastic/elastic_touch", "load/load_encoder", "load/load_state", "mesh/basis", "mesh/cluster_basis",
+          "mesh/deformable_object", "mesh/elastic_elements", "mesh/kriging", "mesh/spring_basis", "packet/sender_policy",
           "packet/substream_encoder", "rigid/encoder_choices", "rigid/level_of_detail", "rigid/pose_thresholds", "rigid/rigid_encoder", "rigid/rigid_state",
           "rigid/rigid_truth", "rigid/rigid_work", "rigid/trigger",
-          "scene/elastic_syntax", "scene/scene_builder", "scene/scene_objects", "sender", "session/congestion", "session/exchange",
+          "scene/elastic_syntax", "scene/scene_builder", "scene/scene_objects", "sender", "session/congestion", "session/device_signal", "session/exchange",
           "session/server_connection", "session/session_client", "session/session_options", "session/session_server",
-          "signal/device_signal", "signal/force_signal"}
+          "signal/force_signal"}
 # Everything that is the operating system's stands in these files, one per need; the others are C++ alone. The codec, the traces and
 # the metrics are not among them; of the simulation only what runs the program that fills meshes.
 SYSTEM = {
@@ -60,25 +61,28 @@ SYSTEM = {
 }
 SYSTEM_HEADER = re.compile(r"^\s*#\s*include\s+<((?:sys|net|netinet|arpa|linux)/[^>]+|unistd\.h|fcntl\.h|poll\.h|termios\.h|spawn\.h|dlfcn\.h|"
                            r"pthread\.h|sched\.h|netdb\.h|ifaddrs\.h|pwd\.h|dirent\.h|signal\.h|windows\.h)>", re.M)
-OURS = ("codec", "io", "metrics", "sim", "device", "cli", "bindings", "conformance")  # not the tests, which also test what only one system does
-UNITS = ("codec", "codec/*", "io/*", "device/*", "metrics")  # each .cpp in them has a unit test of its name
+OURS = ("codec", "session", "io", "metrics", "sim", "device", "cli", "bindings", "conformance")  # not the tests, which also test what only one system does
+UNITS = ("codec", "codec/*", "session", "io/*", "device/*", "metrics")  # each .cpp in them has a unit test of its name
 TESTED_BY = {  # those that have none: the parts of one subject, held against each other; files and whole folders
     "codec/base": "base",
-    "codec/deformable/cluster_basis": "deformable_basis",
-    "codec/deformable/displacement": "deformable_graph",
-    "codec/deformable/kriging": "deformable_graph",
+    "codec/deformable/displacement": "mesh_graph",
     "codec/deformable/main_state": "deformable_layers",
     "codec/deformable/main_syntax": "deformable_encoder",
-    "codec/deformable/motion_clusters": "deformable_basis",
-    "codec/deformable/spring_basis": "deformable_basis",
+    "codec/deformable/motion_clusters": "mesh_basis",
     "codec/deformable/thesis_decoder": "deformable_decoder",
     "codec/deformable/thesis_encoder": "deformable_encoder",
     "codec/deformable/thesis_syntax": "deformable_encoder",
     "codec/elastic": "elastic",
     "codec/file": "packet",
+    "codec/mesh_support": "deformable_decoder",
     "codec/load/load_decoder": "load",
     "codec/load/load_encoder": "load",
     "codec/load/load_state": "load",
+    "codec/mesh/cluster_basis": "mesh_basis",
+    "codec/mesh/deformable_object": "scene_syntax",
+    "codec/mesh/elastic_elements": "elastic",
+    "codec/mesh/kriging": "mesh_graph",
+    "codec/mesh/spring_basis": "mesh_basis",
     "codec/packet": "packet",
     "codec/rigid/pose_thresholds": "rigid",
     "codec/rigid/rigid_decoder": "rigid",
@@ -89,8 +93,6 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "codec/scene/elastic_syntax": "scene_elastic",
     "codec/scene/scene": "scene_syntax",
     "codec/scene/scene_objects": "scene_syntax",
-    "codec/session/session_options": "session_state",
-    "codec/signal/device_path": "signal_device_signal",
     "device/falcon/falcon_frame": "falcon_kinematics",
     "device/falcon/falcon_usb": "falcon_device",
     "device/falcon/libusb_library": "device",
@@ -128,6 +130,7 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "io/trace/trace_reader": "trace",
     "io/trace/trace_writer": "trace",
     "metrics": "metrics",
+    "session/session_options": "session_state",
 }
 
 
@@ -141,7 +144,7 @@ def includes(path):
     """Files of ours that a file includes: <tactus/...> is below codec/, but for the folders beside it."""
     for ours, own in re.findall(r'^\s*#\s*include\s+(?:<tactus/([^>]+)>|"([^"]+)")', path.read_text(encoding="utf-8"), re.M):
         top = ours.split("/")[0]
-        yield own or {"trace": "io/", "metrics": "", "sim": "", "device": ""}.get(top, "codec/") + ours
+        yield own or {"session": "", "trace": "io/", "net": "io/", "seal": "io/", "metrics": "", "sim": "", "device": ""}.get(top, "codec/") + ours
 
 
 def reachable(root, path):
@@ -180,6 +183,50 @@ def check_layers(root):
                 yield f"{path.relative_to(root)}: includes {name}, of a layer above it"
 
 
+def cycles(edges):
+    """Each group of nodes that lead to one another, as one way through it that ends where it began."""
+    def way(start):
+        came, todo = {}, [start]
+        while todo:
+            node = todo.pop(0)
+            for other in sorted(edges.get(node, ())):
+                if other == start:
+                    back = [node]
+                    while back[-1] != start:
+                        back.append(came[back[-1]])
+                    return back[::-1] + [start]
+                if other not in came:
+                    came[other] = node
+                    todo.append(other)
+        return None
+
+    seen = set()
+    for node in sorted(edges):
+        found = None if node in seen else way(node)
+        if found:
+            seen.update(found)
+            yield found
+
+
+def check_cycles(root):
+    """No folder includes another that includes it, directly or not: neither the folders of codec/ nor those at the top. What lies right
+    in codec/ may include all of its folders and is included by none."""
+    for tops, depth in ((("codec",), 2), (OURS, 1)):
+        edges = {}  # by folder and folder: an example
+        for path in sorted(p for top in tops for p in (root / top).rglob("*") if p.suffix in CODE):
+            name = path.relative_to(root)
+            here = "/".join(name.parts[:-1][:depth])
+            for other in sorted(n for n in includes(path) if (root / n).is_file()):
+                there = "/".join(pathlib.PurePath(other).parts[:-1][:depth])
+                if there == "codec" != here and depth == 2:
+                    yield f"{name}: includes {other}, which is above the folders of codec/"
+                elif there != here:
+                    edges.setdefault(here, {}).setdefault(there, f"{name} includes {other}")
+        for way in cycles(edges):
+            examples = "; ".join(edges[a][b] for a, b in zip(way, way[1:]))
+            yield f"{' -> '.join(way)}: a cycle of folders: {examples}"
+
+
 def check_sides(root):
     """The encoder never includes the decoder nor the reverse."""
     for path in sorted((root / "codec").rglob("*")):
@@ -192,9 +239,9 @@ def check_sides(root):
 
 
 def check_integers(root):
-    for path in sorted(p for p in (root / "codec").rglob("*") if p.suffix in CODE):
+    for path in sorted(p for top in ("codec", "session") for p in (root / top).rglob("*") if p.suffix in CODE):
         code = re.sub(r"//[^\n]*", "", path.read_text(encoding="utf-8"))
-        if path.relative_to(root / "codec").with_suffix("").as_posix() not in FLOATS and re.search(r"\b(float|double)\b|<cmath>", code):
+        if path.relative_to(root).with_suffix("").as_posix().removeprefix("codec/") not in FLOATS and re.search(r"\b(float|double)\b|<cmath>", code):
             yield f"{path.relative_to(root)}: floating point, and the file is not in FLOATS"
 
 
@@ -225,16 +272,16 @@ def check_units(root):
 
 def check_stems(root):
     """One stem: specification, code, fuzz target, bench (vectors are the conformance runner's affair)."""
-    for folder in sorted(p for p in (root / "codec").iterdir() if p.is_dir()):
-        stem = folder.name
+    for folder in sorted(p for p in (*(root / "codec").iterdir(), root / "session") if p.is_dir()):
+        stem, name = folder.name, folder.relative_to(root).as_posix()
         if stem in SHARED:
             continue
         if not any((root / "spec").glob(f"*{stem}*.md")):
-            yield f"codec/{stem}: no spec/NN-{stem}.md"
+            yield f"{name}: no spec/NN-{stem}.md"
         for kind in ("fuzz", "bench"):
             programs = (root / "tests" / kind).glob(f"*_{kind}.cpp")
-            if not any(stem in p.stem or any(i.startswith(f"codec/{stem}/") for i in includes(p)) for p in programs):
-                yield f"codec/{stem}: no tests/{kind}/*_{kind}.cpp has its name or includes a header of it"
+            if not any(stem in p.stem or any(i.startswith(f"{name}/") for i in includes(p)) for p in programs):
+                yield f"{name}: no tests/{kind}/*_{kind}.cpp has its name or includes a header of it"
 
 
 def check_tree(root):
@@ -259,7 +306,7 @@ def check_tree(root):
             yield f"CONTRIBUTING.md: the tree names {path.relative_to(root)}, which is not there"
 
 
-CHECKS = (check_root, check_sources, check_layers, check_integers, check_system, check_sides, check_units, check_stems, check_tree)
+CHECKS = (check_root, check_sources, check_layers, check_cycles, check_integers, check_system, check_sides, check_units, check_stems, check_tree)
 
 
 def findings(root):
@@ -271,7 +318,9 @@ def self_test():
     good = {
         "CONTRIBUTING.md": "## Tree\n\n```\ncodec/          the library\n  rigid/        bodies\n                  that are stiff\nspec/           text\n```\n",
         "spec/40-rigid.md": "",
-        "codec/rigid/rigid.h": spdx,
+        "codec/base/bytes.h": spdx,
+        "codec/sender.h": spdx + '#include <tactus/rigid/rigid_encoder.h>\n',
+        "codec/rigid/rigid.h": spdx + '#include <tactus/base/bytes.h>\n',
         "codec/rigid/rigid_encoder.h": spdx + '#include <tactus/rigid/rigid.h>\n',
         "codec/rigid/rigid.cpp": spdx,
         "codec/rigid/trigger.cpp": spdx,
@@ -281,7 +330,9 @@ def self_test():
         "tests/unit/rigid_trigger_test.cpp": spdx,
         "tests/fuzz/packet_fuzz.cpp": spdx + '#include <tactus/rigid/rigid_decoder.h>\n',
         "tests/bench/rigid_bench.cpp": spdx + '#include <tactus/rigid/rigid_decoder.h>\n',
+        "bindings/c/errors.h": spdx + '#include <tactus/base/bytes.h>\n',
         "cli/output.h": spdx,
+        "conformance/report.h": spdx + '#include "bindings/c/errors.h"\n',
     }
     bad = {  # what is changed (None: left out) and a word of the finding that must follow
         "codec/rigid/rigid.h": [("int x;\n", "licence"), (spdx + "\n" * MAX_LINES, "601 lines"),
@@ -291,7 +342,11 @@ def self_test():
         "cli/progress.cpp": [(spdx, "includes nothing of the operating system's")],
         "codec/rigid/rigid_decoder.h": [(spdx + '#include <tactus/rigid/rigid_encoder.h>\n', "the decoder includes")],
         "token": [("secret", "does not belong")],
-        "codec/rigid/curve.h": [(spdx + '#include "cli/output.h"\n', "of a layer above")],
+        "codec/rigid/curve.h": [(spdx + '#include "cli/output.h"\n', "of a layer above"),
+                                (spdx + '#include <tactus/sender.h>\n', "includes codec/sender.h, which is above the folders")],
+        "codec/base/bytes.h": [(spdx + '#include <tactus/rigid/rigid.h>\n', "codec/base -> codec/rigid -> codec/base: a cycle"),
+                               (spdx + '#include "conformance/report.h"\n', "bindings -> codec -> conformance -> bindings: a cycle")],
+        "session/timing.h": [(spdx, "session: no spec/NN-session.md"), (spdx + "double x;\n", "floating point")],
         "spec/40-rigid.md": [(None, "no spec/NN-rigid.md")],
         "tests/unit/rigid_test.cpp": [(None, "rigid.cpp: no tests/unit"), (None, "TESTED_BY names tests/unit/rigid_test.cpp")],
         "tests/unit/rigid_trigger_test.cpp": [(None, "trigger.cpp: no tests/unit")],

@@ -10,7 +10,7 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/deformable/displacement.h>
-#include <tactus/deformable/graph.h>
+#include <tactus/mesh/graph.h>
 #include <tactus/scene/scene_objects.h>
 
 namespace tactus {

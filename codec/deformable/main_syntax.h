@@ -9,8 +9,8 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/range_coder.h>
-#include <tactus/deformable/graph.h>
 #include <tactus/deformable/main_state.h>
+#include <tactus/mesh/graph.h>
 #include <tactus/packet/substream.h>
 #include <tactus/scene/scene_objects.h>
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include <tactus/base/rule.h>
-#include <tactus/deformable/graph.h>
+#include <tactus/mesh/graph.h>
 
 namespace tactus {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <tactus/deformable/displacement.h>
-#include <tactus/deformable/graph.h>
 #include <tactus/deformable/thesis_syntax.h>
+#include <tactus/mesh/graph.h>
 #include <tactus/packet/substream_encoder.h>
 
 namespace tactus {

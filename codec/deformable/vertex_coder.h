@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include <tactus/deformable/graph.h>
 #include <tactus/deformable/main_state.h>
 #include <tactus/deformable/main_syntax.h>
+#include <tactus/mesh/graph.h>
 
 namespace tactus {
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include <tactus/deformable/displacement.h>
-#include <tactus/signal/device_path.h>
+#include <tactus/rigid/device_path.h>
 
 namespace tactus {
 namespace {

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include <tactus/elastic/elastic_elements.h>
 #include <tactus/elastic/elastic_touch.h>
+#include <tactus/mesh/elastic_elements.h>
 #include <tactus/scene/scene.h>
 #include <tactus/scene/scene_objects.h>
 

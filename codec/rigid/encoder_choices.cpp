@@ -9,8 +9,8 @@
 #include <utility>
 
 #include <tactus/base/fixed.h>
+#include <tactus/rigid/device_path.h>
 #include <tactus/rigid/rigid_syntax.h>
-#include <tactus/signal/device_path.h>
 
 namespace tactus {
 

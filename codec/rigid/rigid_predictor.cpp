@@ -5,7 +5,7 @@
 #include <optional>
 
 #include <tactus/base/fixed.h>
-#include <tactus/signal/device_path.h>
+#include <tactus/rigid/device_path.h>
 
 namespace tactus {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <tactus/base/rule.h>
-#include <tactus/deformable/basis.h>
+#include <tactus/mesh/basis.h>
 #include <tactus/scene/elastic_syntax.h>
 #include <tactus/scene/scene_rules.h>
 

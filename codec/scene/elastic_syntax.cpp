@@ -10,7 +10,7 @@
 #include <tactus/base/fixed.h>
 #include <tactus/base/rule.h>
 #include <tactus/base/tri_mesh.h>
-#include <tactus/elastic/elastic_elements.h>
+#include <tactus/mesh/elastic_elements.h>
 #include <tactus/scene/scene_objects.h>
 #include <tactus/scene/scene_rules.h>
 

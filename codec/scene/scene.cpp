@@ -9,10 +9,10 @@
 #include <tactus/base/fixed.h>
 #include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
-#include <tactus/deformable/basis.h>
-#include <tactus/deformable/graph.h>
-#include <tactus/elastic/elastic_elements.h>
+#include <tactus/mesh/basis.h>
+#include <tactus/mesh/elastic_elements.h>
 #include <tactus/scene/elastic_syntax.h>
+#include <tactus/scene/mesh_support.h>
 #include <tactus/scene/scene_rules.h>
 
 namespace tactus {
@@ -112,7 +112,8 @@ RuleName broken_interest_rule(const SceneSpec& spec) noexcept {
 
 namespace {
 
-Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits) {
+/// in  meshes  null: there are no deformable objects
+Result<void> find_broken_rule(const SceneSpec& spec, const MeshSupport* meshes, const DecodeLimits& limits) {
   if (const RuleName rule = broken_parameter_rule(spec)) return fail(Errc::invalid, rule);
   if (spec.deformables.size() > kMaxDeformables) return fail(Errc::invalid, "R-DEF-1");
   if (spec.objects.size() + spec.deformables.size() > limits.objects) return fail(Errc::limit_exceeded, "R-STR-14");
@@ -124,8 +125,8 @@ Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits)
   std::uint64_t vertices = 0, triangles = 0;
   for (const DeformableObject& object : spec.deformables) {
     if (!is_name(object.name) || !names.insert(object.name).second) return fail(Errc::invalid, "R-STR-11");
-    if (const RuleName rule = broken_deformable_rule(object)) return fail(Errc::invalid, rule);
-    if (object.body && !is_solid(object, spec.grid.position)) return fail(Errc::invalid, "R-ELA-4");
+    if (const RuleName rule = meshes->broken_rule(object)) return fail(Errc::invalid, rule);
+    if (object.body && !meshes->is_solid(object, spec.grid.position)) return fail(Errc::invalid, "R-ELA-4");
     vertices += object.rest.size();
     triangles += object.triangles.size();
     if (vertices > limits.vertices || triangles > limits.triangles) return fail(Errc::limit_exceeded, "R-STR-14");
@@ -137,34 +138,44 @@ Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits)
   if (spec.bounds && !are_bounds(spec)) return fail(Errc::invalid, "R-STR-17");
   if (state_bytes(spec) > limits.state_bytes) return fail(Errc::limit_exceeded, "R-STR-18");
   if (basis_work(spec) > limits.basis_work) return fail(Errc::limit_exceeded, "R-STR-21");
-  if (elastic_work(spec) > limits.elastic_work) return fail(Errc::limit_exceeded, "R-STR-24");
+  if (meshes && meshes->elastic_work(spec) > limits.elastic_work) return fail(Errc::limit_exceeded, "R-STR-24");
   for (const DeformableObject& object : spec.deformables)
-    if (object.body && !steps_stably(object, spec.grid.position, spec.tick_rate)) return fail(Errc::invalid, "R-ELA-5");
+    if (object.body && !meshes->steps_stably(object, spec.grid.position, spec.tick_rate)) return fail(Errc::invalid, "R-ELA-5");
   return {};
 }
 
 }  // namespace
 
 Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits) try {
-  return find_broken_rule(spec, limits);
+  return find_broken_rule(spec, &kMeshSupport, limits);
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
 
-Scene::Scene(SceneSpec&& spec) : SceneSpec(std::move(spec)), has_paths_(driven || has_elastic_body(deformables)) {
+Result<void> check_scene(const Scene& scene, const DecodeLimits& limits) try {
+  return find_broken_rule(scene, scene.mesh_support(), limits);
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Scene::Scene(SceneSpec&& spec, const MeshSupport* meshes)
+    : SceneSpec(std::move(spec)), mesh_support_(meshes), has_paths_(driven || has_elastic_body(deformables)) {
   for (std::uint32_t i = 0; i < objects.size(); ++i)
     if (objects[i].dof != Dof::none) moving_.push_back(i);
   for (DeformableObject& object : deformables) {
-    if (object.spring_basis.modes > 0) object.basis = spring_basis(object);
-    if (object.cluster_basis.count > 0) object.basis = cluster_basis(object);
+    meshes->compute_basis(object);
     const bool is_main = object.profile == DeformableProfile::main;
-    hierarchies_.push_back(is_main ? std::make_shared<const VertexHierarchy>(vertex_hierarchy(object)) : nullptr);
+    hierarchies_.push_back(is_main ? meshes->hierarchy(object) : nullptr);
   }
 }
 
-Result<SharedScene> Scene::create(SceneSpec spec, const DecodeLimits& limits) try {
-  TACTUS_CHECK(find_broken_rule(spec, limits));
-  return SharedScene(new Scene(std::move(spec)));
+Result<SharedScene> Scene::create(SceneSpec spec, const DecodeLimits& limits) {
+  return create(std::move(spec), &kMeshSupport, limits);
+}
+
+Result<SharedScene> Scene::create(SceneSpec&& spec, const MeshSupport* meshes, const DecodeLimits& limits) try {
+  TACTUS_CHECK(find_broken_rule(spec, meshes, limits));
+  return SharedScene(new Scene(std::move(spec), meshes));
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }

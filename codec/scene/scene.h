@@ -101,6 +101,7 @@ struct DecodeLimits {
   std::uint64_t elastic_work = 1ull << 30;  ///< of all elastic bodies: thin ones of 10 000 vertices, or a cube of 1300
 };
 
+struct MeshSupport;
 struct VertexHierarchy;
 
 /// A checked scene, its spring bases computed. Never changes after it is made, so that threads may share it.
@@ -121,12 +122,18 @@ class Scene : public SceneSpec {
     return hierarchies_[static_cast<std::size_t>(&object - deformables.data())];
   }
 
+  /// What its deformable objects need; null: it has none. Internal to the library.
+  const MeshSupport* mesh_support() const noexcept { return mesh_support_; }
+
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
  private:
-  explicit Scene(SceneSpec&& spec);
+  friend class SceneBuilder;
+  static Result<std::shared_ptr<const Scene>> create(SceneSpec&& spec, const MeshSupport* meshes, const DecodeLimits& limits);
+  Scene(SceneSpec&& spec, const MeshSupport* meshes);
 
+  const MeshSupport* mesh_support_;
   std::vector<std::uint32_t> moving_;
   std::vector<std::shared_ptr<const VertexHierarchy>> hierarchies_;  // by deformable object; null: profile thesis
   bool has_paths_ = false;
@@ -136,6 +143,7 @@ using SharedScene = std::shared_ptr<const Scene>;
 
 /// The rule that a declaration breaks, if any.   err  as Scene::create
 Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits = {});
+Result<void> check_scene(const Scene& scene, const DecodeLimits& limits);  ///< the same, with what the scene has linked
 
 /// Memory of the states that the decoders of all substreams keep [bytes]. spec/20-scene.md section 9
 std::uint64_t state_bytes(const SceneSpec& spec) noexcept;

@@ -9,7 +9,8 @@
 
 #include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
-#include <tactus/elastic/elastic_elements.h>
+#include <tactus/mesh/elastic_elements.h>
+#include <tactus/scene/mesh_support.h>
 #include <tactus/scene/scene_rules.h>
 
 namespace tactus {
@@ -196,7 +197,25 @@ SceneBuilder& SceneBuilder::rigid(std::string name, const Pose& initial, std::ui
   return *this;
 }
 
+/// Parts of build() that deformable objects alone need.
+struct SceneBuilder::MeshParts {
+  const MeshSupport* support;
+  Result<DeformableObject> (*make)(Deformable& of, const SceneSpec& spec, bool is_nearly_exact);
+};
+
+const SceneBuilder::MeshParts SceneBuilder::kMeshParts{
+    &kMeshSupport, [](Deformable& of, const SceneSpec& spec, bool is_nearly_exact) -> Result<DeformableObject> {
+      choose(of.coding, is_nearly_exact);
+      TACTUS_TRY(DeformableObject object, make_deformable_object(of.name, of.surface, spec.grid.position));
+      TACTUS_CHECK(apply(of.coding, spec.tick_rate, object));
+      if (of.elastic) {
+        TACTUS_TRY(object.body, on_grid(std::move(*of.elastic), spec.grid.position));
+      }
+      return object;
+    }};
+
 SceneBuilder& SceneBuilder::deformable(std::string name, TriMesh surface, DeformableCoding coding) {
+  meshes_ = &kMeshParts;
   deformables_.push_back({std::move(name), std::move(surface), std::move(coding)});
   return *this;
 }
@@ -328,27 +347,33 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
   if (spec.driven) spec.driven->bodies.resize(spec.objects.size());
   const bool is_nearly_exact = taken.promise_ && taken.promise_->deformables.visual <= kNearlyExact;
   for (Deformable& of : taken.deformables_) {
-    choose(of.coding, is_nearly_exact);
-    auto object = make_deformable_object(of.name, of.surface, spec.grid.position);
+    auto object = taken.meshes_->make(of, spec, is_nearly_exact);
     if (!object) return refuse(object.error(), of.name);
-    if (const auto applied = apply(of.coding, spec.tick_rate, *object); !applied) return refuse(applied.error(), of.name);
-    if (of.elastic) {
-      auto body = on_grid(std::move(*of.elastic), spec.grid.position);
-      if (!body) return refuse(body.error(), of.name);
-      object->body = std::move(*body);
-    }
     if (!is_name(of.name) || !names.insert(of.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, of.name);
-    if (const RuleName rule = broken_deformable_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
+    if (const RuleName rule = taken.meshes_->support->broken_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
     spec.deformables.push_back(std::move(*object));
   }
   if (taken.promise_) spec.bounds = bounds_of(spec, taken.promise_->rigid, taken.promise_->deformables, taken.promise_->loads);
   const Counts counts = counts_of(spec);
-  auto scene = Scene::create(std::move(spec), limits);
+  auto scene = Scene::create(std::move(spec), taken.meshes_ ? taken.meshes_->support : nullptr, limits);
   if (scene) return *scene;
   const bool is_too_large = scene.error().rule == std::string_view("R-STR-14");
   return refuse(scene.error(), {}, is_too_large ? too_many(counts, limits) : std::string());
 } catch (const std::bad_alloc&) {
   return tl::make_unexpected(SceneFinding{out_of_memory().value(), {}});
+}
+
+Result<SharedScene> device_scene(const SceneSpec& scene) {
+  constexpr double kReach = 0.1;  // [s]: a device that is not heard of stands still then
+  auto built = SceneBuilder(scene.tick_rate)
+                   .rigid("device")
+                   .rigid_profile(RigidProfile::thesis)
+                   .grid(scene.grid)
+                   .extrapolate(kReach)
+                   .baselines(64)
+                   .build();
+  if (!built) return tl::unexpected(built.error().error);
+  return *built;
 }
 
 }  // namespace tactus

@@ -141,7 +141,10 @@ class SceneBuilder {
   RigidProfile rigid_profile_ = RigidProfile::main;
   std::vector<Rigid> rigid_;
   std::vector<Deformable> deformables_;
-  bool is_of_nothing_ = false;  // driven() or elastic() came before any such object
+  struct MeshParts;
+  static const MeshParts kMeshParts;
+  const MeshParts* meshes_ = nullptr;  // what deformable() needs: a program that never calls it does not link that
+  bool is_of_nothing_ = false;         // driven() or elastic() came before any such object
   struct Promise {
     RigidTriggers rigid;
     DeformableThresholds deformables;
@@ -149,5 +152,8 @@ class SceneBuilder {
   };
   std::optional<Promise> promise_;
 };
+
+/// The scene of a device that moves in `scene`, one rigid object; its orientation is coded, too. spec/65-signal.md section 2
+Result<SharedScene> device_scene(const SceneSpec& scene);
 
 }  // namespace tactus

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-#include <tactus/signal/device_signal.h>
+#include <tactus/session/device_signal.h>
 #include <tactus/signal/force_signal.h>
 
 namespace tactus::sim::study {

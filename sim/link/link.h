@@ -15,7 +15,7 @@
 #include <tactus/packet/packet.h>
 #include <tactus/receiver.h>
 #include <tactus/sender.h>
-#include <tactus/signal/device_signal.h>
+#include <tactus/session/device_signal.h>
 #include <tactus/sim/random.h>
 
 namespace tactus::sim {

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from tools.book import NUMBER, SPEC
 
-FOLDERS = ("bindings", "cli", "codec", "conformance", "device", "docs", "examples", "io", "lab", "metrics", "reports", "sim", "tests", "tools")
+FOLDERS = ("bindings", "cli", "codec", "conformance", "device", "docs", "examples", "io", "lab", "metrics", "reports", "session", "sim", "tests", "tools")
 SUFFIXES = {".c", ".cpp", ".cs", ".h", ".js", ".lua", ".md", ".mjs", ".py", ".sh", ".toml", ".ts", ".txt"}
 GAP = r"(?:\s|\n[ \t]*(?://+|#|\*|--)[ \t]*)"                # between words of a comment
 MANY = rf"{NUMBER}(?:(?:,{GAP}+|{GAP}+and{GAP}+|{GAP}+to{GAP}+){NUMBER})*(?![\w^%])"

@@ -7,8 +7,8 @@
 
 #include <tactus/deformable/main_state.h>
 #include <tactus/elastic/driven_shape.h>
-#include <tactus/signal/device_path.h>
-#include <tactus/signal/device_signal.h>
+#include <tactus/rigid/device_path.h>
+#include <tactus/scene/scene_builder.h>
 #include <tactus/sim/deformable/deformable_body.h>
 #include <tactus/sim/deformable/elastic_physics.h>
 #include <tactus/sim/scene/scene.h>

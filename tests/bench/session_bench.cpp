@@ -13,9 +13,9 @@
 #include <vector>
 
 #include <tactus/scene/scene_builder.h>
+#include <tactus/session/device_signal.h>
 #include <tactus/session/session_client.h>
 #include <tactus/session/session_server.h>
-#include <tactus/signal/device_signal.h>
 #include "tests/unit/rigid_fixture.h"
 
 namespace tactus {

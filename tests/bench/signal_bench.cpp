@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include <tactus/signal/device_signal.h>
+#include <tactus/session/device_signal.h>
 #include <tactus/signal/force_signal.h>
 #include <tactus/tactus.h>
 

@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include <tactus/client/replica.h>
-#include <tactus/signal/device_path.h>
-#include <tactus/signal/device_signal.h>
+#include <tactus/rigid/device_path.h>
+#include <tactus/scene/scene_builder.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactus;

@@ -9,10 +9,9 @@
 #include <tactus/base/bytes.h>
 #include <tactus/deformable/main_state.h>
 #include <tactus/elastic/driven_shape.h>
+#include <tactus/rigid/device_path.h>
 #include <tactus/scene/scene_builder.h>
 #include <tactus/scene/scene_syntax.h>
-#include <tactus/signal/device_path.h>
-#include <tactus/signal/device_signal.h>
 #include "tests/fuzz/require.h"
 
 namespace {

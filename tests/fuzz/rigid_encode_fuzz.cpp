@@ -5,8 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include <tactus/signal/device_path.h>
-#include <tactus/signal/device_signal.h>
+#include <tactus/rigid/device_path.h>
 #include <tactus/tactus.h>
 #include "tests/fuzz/motions.h"
 #include "tests/fuzz/require.h"

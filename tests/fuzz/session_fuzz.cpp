@@ -3,7 +3,7 @@
 /// Nothing long is answered, to an address that has not proven itself no more than it said, and what an end says can be read.
 #include <cstring>
 
-#include <tactus/signal/device_signal.h>
+#include <tactus/session/device_signal.h>
 #include "tests/fuzz/session_world.h"
 
 namespace tactus::testing {

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 
-#include <tactus/signal/device_signal.h>
+#include <tactus/session/device_signal.h>
 #include <tactus/signal/force_signal.h>
 #include <tactus/tactus.h>
 #include "tests/fuzz/motions.h"

@@ -8,9 +8,8 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/elastic/driven_shape.h>
+#include <tactus/rigid/device_path.h>
 #include <tactus/scene/scene_builder.h>
-#include <tactus/signal/device_path.h>
-#include <tactus/signal/device_signal.h>
 #include "tests/golden/golden.h"
 
 namespace tactus::golden {

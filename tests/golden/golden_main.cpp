@@ -10,8 +10,7 @@
 #include <vector>
 
 #include <tactus/base/bytes.h>
-#include <tactus/signal/device_path.h>
-#include <tactus/signal/device_signal.h>
+#include <tactus/rigid/device_path.h>
 #include <tactus/tactus.h>
 #include "tests/golden/golden.h"
 

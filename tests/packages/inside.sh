@@ -49,7 +49,7 @@ if has libtactus-dev; then
   step 'the program in the head of tactus.h, by pkg-config'
   c++ -std=c++20 umbrella.cpp $(pkg-config --cflags --libs tactus-codec) -o umbrella
   ./umbrella
-  for component in seal modes surface fem; do
+  for component in session seal modes surface fem; do
     pkg-config --exists tactus-$component || continue
     step "a program of the component $component, by pkg-config"
     c++ -std=c++20 "$component.cpp" $(pkg-config --cflags --libs tactus-$component) -o program

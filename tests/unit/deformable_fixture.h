@@ -17,7 +17,7 @@
 #include <vector>
 
 #include <tactus/base/fixed.h>
-#include <tactus/deformable/graph.h>
+#include <tactus/mesh/graph.h>
 #include <tactus/tactus.h>
 #include "tests/unit/rigid_fixture.h"
 

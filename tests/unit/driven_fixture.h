@@ -6,10 +6,9 @@
 #include <memory>
 
 #include <tactus/base/geometry.h>
+#include <tactus/rigid/device_path.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/scene/scene_builder.h>
-#include <tactus/signal/device_path.h>
-#include <tactus/signal/device_signal.h>
 
 namespace tactus::testing {
 

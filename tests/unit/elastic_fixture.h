@@ -8,9 +8,8 @@
 #include <utility>
 
 #include <tactus/elastic/driven_shape.h>
+#include <tactus/rigid/device_path.h>
 #include <tactus/scene/scene_builder.h>
-#include <tactus/signal/device_path.h>
-#include <tactus/signal/device_signal.h>
 #include <tactus/sim/tets/tet_mesh.h>
 
 namespace tactus::testing {

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <span>
 
-#include <tactus/deformable/graph.h>
+#include <tactus/mesh/graph.h>
 #include <tactus/trace/trace_file.h>
 #include "tests/bench/peers/md3.h"
 

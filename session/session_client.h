@@ -12,8 +12,8 @@
 #include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
 #include <tactus/receiver.h>
+#include <tactus/session/device_signal.h>
 #include <tactus/session/session_options.h>
-#include <tactus/signal/device_signal.h>
 
 namespace tactus {
 

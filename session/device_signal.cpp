@@ -1,26 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/signal/device_signal.h>
+#include <tactus/session/device_signal.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include <tactus/rigid/rigid_predictor.h>
-#include <tactus/scene/scene_builder.h>
 
 namespace tactus {
-
-Result<SharedScene> device_scene(const SceneSpec& scene) {
-  constexpr double kReach = 0.1;  // [s]: a device that is not heard of stands still then
-  auto built = SceneBuilder(scene.tick_rate)
-                   .rigid("device")
-                   .rigid_profile(RigidProfile::thesis)
-                   .grid(scene.grid)
-                   .extrapolate(kReach)
-                   .baselines(64)
-                   .build();
-  if (!built) return tl::unexpected(built.error().error);
-  return *built;
-}
 
 SenderOptions device_sender_options(const DeviceCoding& coding) noexcept {
   SenderOptions options;

@@ -9,6 +9,7 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/rule.h>
+#include <tactus/scene/scene_builder.h>
 #include <tactus/scene/scene_syntax.h>
 #include <tactus/session/server_connection.h>
 

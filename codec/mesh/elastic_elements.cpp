@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/elastic/elastic_elements.h>
+#include <tactus/mesh/elastic_elements.h>
 
 #include <algorithm>
 #include <array>

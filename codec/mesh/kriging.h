@@ -5,7 +5,7 @@
 /// corrected by its remainder, and the root of an integer below 2^52 is exact.
 #pragma once
 
-#include <tactus/deformable/graph.h>
+#include <tactus/mesh/graph.h>
 
 namespace tactus {
 

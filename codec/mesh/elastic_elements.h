@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include <tactus/scene/scene_objects.h>
+#include <tactus/mesh/deformable_object.h>
 
 namespace tactus {
 

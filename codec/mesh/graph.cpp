@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/graph.h>
+#include <tactus/mesh/graph.h>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include <tactus/deformable/kriging.h>
+#include <tactus/mesh/kriging.h>
 
 namespace tactus {
 

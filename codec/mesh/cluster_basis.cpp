@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/basis.h>
+#include <tactus/mesh/basis.h>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include <tactus/deformable/graph.h>
+#include <tactus/mesh/graph.h>
 
 static_assert(FLT_EVAL_METHOD == 0, "both ends compute the same bits only if no operation has more");
 

@@ -10,13 +10,13 @@
 #include <optional>
 
 #include <tactus/base/geometry.h>
-#include <tactus/base/result.h>
 #include <tactus/receiver.h>
+#include <tactus/scene/scene_builder.h>
 #include <tactus/sender.h>
 
 namespace tactus {
 
-/// When the device is sent.
+/// When the device, whose scene is device_scene(), is sent.
 struct DeviceCoding {
   double position = 1e-4;        ///< [m] largest error in free space
   double rotation = 0.02;        ///< [rad] largest error of the orientation
@@ -29,9 +29,6 @@ struct DeviceContact {
   Vec3 proxy;            ///< [m] world
   double stiffness = 0;  ///< [N/m] > 0
 };
-
-/// The scene of a device that moves in `scene`; its orientation is coded, too.
-Result<SharedScene> device_scene(const SceneSpec& scene);
 
 /// Options of the Sender of a device.
 SenderOptions device_sender_options(const DeviceCoding& coding) noexcept;

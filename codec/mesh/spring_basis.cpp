@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/basis.h>
+#include <tactus/mesh/basis.h>
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include <tactus/deformable/graph.h>
-#include <tactus/deformable/kriging.h>
+#include <tactus/mesh/graph.h>
+#include <tactus/mesh/kriging.h>
 
 static_assert(FLT_EVAL_METHOD == 0, "both ends compute the same bits only if no operation has more");
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/signal/device_path.h>
+#include <tactus/rigid/device_path.h>
 
 #include <algorithm>
 #include <limits>

@@ -20,7 +20,7 @@ class DevicePath {
  public:
   static constexpr std::size_t kPackets = 2048, kShifts = 64;  ///< kept; older ones are forgotten
 
-  /// in   device  scene of the device
+  /// in   device  device_scene()
   explicit DevicePath(SharedScene device) : scene_(std::move(device)) {}
 
   /// A packet of the device brought a state, perhaps one that others have overtaken.   in  number  of it, not added before

@@ -12,12 +12,12 @@
 #include <vector>
 
 #include <tactus/receiver.h>
+#include <tactus/rigid/device_path.h>
 #include <tactus/sender.h>
 #include <tactus/session/datagram.h>
 #include <tactus/session/fragments.h>
 #include <tactus/session/numbers.h>
 #include <tactus/session/session_options.h>
-#include <tactus/signal/device_path.h>
 
 namespace tactus {
 

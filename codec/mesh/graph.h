@@ -11,7 +11,7 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/tri_mesh.h>
-#include <tactus/scene/scene_objects.h>
+#include <tactus/mesh/deformable_object.h>
 
 namespace tactus {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/kriging.h>
+#include <tactus/mesh/kriging.h>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include <tactus/base/fixed.h>
-#include <tactus/deformable/graph.h>
+#include <tactus/mesh/graph.h>
 
 namespace tactus {
 namespace {

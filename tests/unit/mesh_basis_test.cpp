@@ -11,8 +11,8 @@
 #include <set>
 #include <utility>
 
-#include <tactus/deformable/basis.h>
 #include <tactus/deformable/motion_clusters.h>
+#include <tactus/mesh/basis.h>
 #include "tests/unit/deformable_fixture.h"
 
 namespace tactus {

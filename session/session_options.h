@@ -9,7 +9,7 @@
 
 #include <tactus/scene/scene.h>
 #include <tactus/sender.h>
-#include <tactus/signal/device_signal.h>
+#include <tactus/session/device_signal.h>
 
 namespace tactus {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <tactus/base/fixed.h>
-#include <tactus/deformable/graph.h>
-#include <tactus/scene/scene_objects.h>
+#include <tactus/mesh/deformable_object.h>
+#include <tactus/mesh/graph.h>
 
 namespace tactus {
 

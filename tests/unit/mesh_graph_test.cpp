@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <tactus/deformable/displacement.h>
-#include <tactus/deformable/graph.h>
+#include <tactus/mesh/graph.h>
 #include "tests/unit/deformable_fixture.h"
 
 namespace tactus {
