@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from conventions import FNV_START, fnv1a, round_div
 from curve import NO_OFFSET, Offset, cubic, difference, displaced, offset
-from smoothing import smoothed, kept
 from rigid import Packet, motion, predict
 from scene import OUT_OF_INTEREST, Declaration, State
+from smoothing import kept, smoothed
 
 MOST_SMOOTHED = 64
 HEARD = 1024

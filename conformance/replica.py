@@ -10,9 +10,9 @@ from conventions import FNV_START, clamp, fnv1a, round_div
 from curve import AT_REST, NO_OFFSET, Offset, cubic, difference, displaced, offset
 from device_path import DevicePath
 from driven import DrivenBody
-from smoothing import smoothed, kept
 from rigid import DRIVEN, Packet, motion, predict
 from scene import Declaration, State
+from smoothing import kept, smoothed
 
 FRACTION = 49152                                               # P = 75 %, x 2^-16
 MOST_GAPS = 5

@@ -135,9 +135,11 @@ void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uin
   if (scene.interest) update.lod = static_cast<std::uint8_t>(coder.template tree<3>(models.lod, update.lod));
   if (scene.is_smoothed) {
     const std::uint32_t usual = usual_smoothing_exp(scene.tick_rate);
-    update.smoothing_exp = static_cast<std::uint8_t>((usual - coder.template tree<3>(models.smoothing_exp, (usual - update.smoothing_exp) & 7u)) & 7u);
+    update.smoothing_exp = static_cast<std::uint8_t>(
+        (usual - coder.template tree<3>(models.smoothing_exp, (usual - update.smoothing_exp) & 7u)) & 7u);
   }
-  if (update.smoothing_exp > 0) update.retained = static_cast<std::uint8_t>(coder.template tree<2>(models.retained, update.retained));
+  if (update.smoothing_exp > 0)
+    update.retained = static_cast<std::uint8_t>(coder.template tree<2>(models.retained, update.retained));
   if (has_predictors(scene)) {
     TreeModel<2>& model = models.predictor[static_cast<std::size_t>(update.reason) + (scene.driven ? 4 : 0)];
     update.predictor = static_cast<std::uint8_t>(coder.template tree<2>(model, update.predictor));

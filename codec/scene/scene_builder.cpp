@@ -268,7 +268,7 @@ bool SceneBuilder::steps_stably(const ElasticPhysics& physics, std::span<const V
 }
 
 SceneBuilder& SceneBuilder::declare_bounds(const RigidTriggers& rigid, const DeformableThresholds& deformables,
-                                    const LoadThresholds& loads) {
+                                           const LoadThresholds& loads) {
   declared_bounds_ = {rigid, deformables, loads};
   return *this;
 }
@@ -292,8 +292,9 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
                     "a world of " + figure(metres) + " m: it is above 0 m and below " + figure(reach_of(kCoarsestGrid)) + " m");
     spec.grid = *grid;
     const bool moves = std::ranges::any_of(taken.rigid_, [](const Rigid& object) { return object.dof != Dof::none; });
-    const double bound =
-        taken.declared_bounds_ ? finest_bound(taken.declared_bounds_->rigid, taken.declared_bounds_->deformables, moves, !taken.deformables_.empty()) : 0;
+    const double bound = taken.declared_bounds_ ? finest_bound(taken.declared_bounds_->rigid, taken.declared_bounds_->deformables,
+                                                               moves, !taken.deformables_.empty())
+                                                : 0;
     if (bound > 0 && bound < std::ldexp(kSteps, -static_cast<int>(spec.grid.position)))
       return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {}, too_large(metres, bound));
   }
@@ -324,7 +325,8 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
     spec.interest = *interest;
     spec.is_smoothed = taken.rigid_profile_ == RigidProfile::main;
   }
-  if (taken.declared_bounds_ && !are_fractions(*taken.declared_bounds_)) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});
+  if (taken.declared_bounds_ && !are_fractions(*taken.declared_bounds_))
+    return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});
   if (spec.driven) spec.driven->bodies.resize(spec.objects.size());
   const bool is_nearly_exact = taken.declared_bounds_ && taken.declared_bounds_->deformables.visual <= kNearlyExact;
   for (Deformable& of : taken.deformables_) {
@@ -341,7 +343,9 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
     if (const RuleName rule = broken_deformable_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
     spec.deformables.push_back(std::move(*object));
   }
-  if (taken.declared_bounds_) spec.bounds = bounds_of(spec, taken.declared_bounds_->rigid, taken.declared_bounds_->deformables, taken.declared_bounds_->loads);
+  if (taken.declared_bounds_)
+    spec.bounds =
+        bounds_of(spec, taken.declared_bounds_->rigid, taken.declared_bounds_->deformables, taken.declared_bounds_->loads);
   const Counts counts = counts_of(spec);
   auto scene = Scene::create(std::move(spec), limits);
   if (scene) return *scene;

@@ -76,7 +76,7 @@ class Words(unittest.TestCase):
 
     def test_labels_of_axes_keep_their_unit(self):
         self.assertEqual(plot.axis_label("speed [mm/s]"), "speed [mm/s]")
-        self.assertEqual(plot.axis_label("fraction of the time in contact [%]"), "fraction of the time in\ncontact [%]")
+        self.assertEqual(plot.axis_label("fraction of the time in contact [%]"), "fraction of the time\nin contact [%]")
         long = plot.axis_label("position of " + 9 * "another " + "cube [mm]")
         self.assertEqual(long.count("\n"), 1)
         self.assertTrue(long.endswith("… [mm]"), long)

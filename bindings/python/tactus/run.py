@@ -244,7 +244,7 @@ def compare(trace: str | os.PathLike[str] | bytes, stream: str | os.PathLike[str
 def read_table(path: str | os.PathLike[str] | bytes) -> dict[str, npt.NDArray[Any]]:
     """A table that `tactus sweep` or `tactus bench` wrote (points.csv), by columns.
 
-    Columns of numbers become float64, with fractions such as "2.5%" as fractions (0.025) and empty cells as NaN; others stay text.
+    Columns of numbers become float64, with percentages such as "2.5%" as fractions (0.025) and empty cells as NaN; others stay text.
     """
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
