@@ -70,12 +70,12 @@ void Progress::draw(std::uint64_t done, Clock::time_point now) {
   if (!total_ || *total_ == 0) {
     fmt::print(stderr, "\r{} {} so far, {:.0f} s\x1b[K", label_, done, seconds);
   } else {
-    const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(*total_));
+    const double fraction = std::min(1.0, static_cast<double>(done) / static_cast<double>(*total_));
     const std::size_t width = width_beside(label_);
-    const auto filled = static_cast<std::size_t>(share * static_cast<double>(width));
-    const double left = share > 0 ? seconds / share - seconds : 0;
+    const auto filled = static_cast<std::size_t>(fraction * static_cast<double>(width));
+    const double left = fraction > 0 ? seconds / fraction - seconds : 0;
     fmt::print(stderr, "\r{} {}{:━<{}}{}{:─<{}} {:3.0f} %  {:.0f} s left\x1b[K", label_, coloured_ ? "\x1b[36m" : "", "", filled,
-               coloured_ ? "\x1b[0m" : "", "", width - filled, 100 * share, left);
+               coloured_ ? "\x1b[0m" : "", "", width - filled, 100 * fraction, left);
   }
   std::fflush(stderr);
 }

@@ -292,7 +292,7 @@ def extension(f, kind: int, moving: int, vertices: list[int], has_loads: bool) -
                 for _ in range({0: 0, 2: 3}.get(f.number("haptic", "B"), 2)):
                     f.f64("haptic_bounds")
             for _ in vertices:
-                for _ in range(3 if f.number("promise", "B") & 2 else 1):
+                for _ in range(3 if f.number("bound_flags", "B") & 2 else 1):
                     f.f64("deformable_bounds")
             for _ in range(2 if has_loads else 0):
                 f.f64("load_bounds")

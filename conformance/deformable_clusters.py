@@ -7,7 +7,7 @@ from math import floor, sqrt
 from deformable_graph import first_graph
 from deformable_header import DeformableObject, Mode
 
-MOST_SHARES = 4
+MOST_WEIGHTS = 4
 WHOLE = 1 << 16
 FLAT = 2.0 ** -30
 AXES = range(3)
@@ -18,27 +18,27 @@ def work(item: DeformableObject) -> int:
     return 0 if item.clusters is None else len(item.rest) * (item.blend + 4) // 4
 
 
-def shares_of(item: DeformableObject) -> list[dict[int, int]]:
-    """By vertex: the shares of clusters, x 2^-16."""
+def weights_of(item: DeformableObject) -> list[dict[int, int]]:
+    """By vertex: the weights of clusters, x 2^-16."""
     graph = first_graph(item)
-    shares = [{c: WHOLE} for c in item.clusters]
+    weights = [{c: WHOLE} for c in item.clusters]
     for _ in range(item.blend):
-        shares = [blended(shares[v], [shares[w] for w in graph[v]]) for v in range(len(shares))]
-    return shares
+        weights = [blended(weights[v], [weights[w] for w in graph[v]]) for v in range(len(weights))]
+    return weights
 
 
 def blended(own: dict[int, int], others: list[dict[int, int]]) -> dict[int, int]:
     if not others:
         return own
-    sums = {c: len(others) * share for c, share in own.items()}
+    sums = {c: len(others) * weight for c, weight in own.items()}
     for other in others:
-        for c, share in other.items():
-            sums[c] = sums.get(c, 0) + share
-    kept = sorted(sums, key=lambda c: (-sums[c], c))[:MOST_SHARES]
+        for c, weight in other.items():
+            sums[c] = sums.get(c, 0) + weight
+    kept = sorted(sums, key=lambda c: (-sums[c], c))[:MOST_WEIGHTS]
     total = sum(sums[c] for c in kept)
     out = {c: (sums[c] << 16) // total for c in kept}
     out[kept[0]] += WHOLE - sum(out.values())
-    return {c: share for c, share in out.items() if share > 0}
+    return {c: weight for c, weight in out.items() if weight > 0}
 
 
 def product(w: list[float], a: list[float], b: list[float]) -> float:
@@ -63,11 +63,11 @@ def functions(item: DeformableObject, members: list[int], w: list[float]) -> lis
 
 
 def cluster_modes(item: DeformableObject) -> list[Mode]:
-    shares = shares_of(item)
+    weights = weights_of(item)
     modes = []
     for cluster in range(item.mode_count // 12):
-        members = [v for v, of in enumerate(shares) if cluster in of]
-        w = [float(shares[v][cluster]) for v in members]
+        members = [v for v, of in enumerate(weights) if cluster in of]
+        w = [float(weights[v][cluster]) for v in members]
         for f in functions(item, members, w):
             values = [of * x for of, x in zip(w, f)]
             largest = max((abs(x) for x in values), default=0.0) or 1.0

@@ -158,8 +158,8 @@ class Hierarchy:
             a[i] = to(34, round_div(a[i] << 24, m[i][i]))
             b[i] = to(34, round_div(b[i] << 24, m[i][i]))
         rest = to(26, Q - sum(a))
-        share = [to(34, round_div(x << 24, max(LEAST_PIVOT, sum(b)))) for x in b]
-        return [clamp(round_shift(x + round_shift(s * rest, 24), 9), -65536, 65536) for x, s in zip(a, share)]
+        fraction = [to(34, round_div(x << 24, max(LEAST_PIVOT, sum(b)))) for x in b]
+        return [clamp(round_shift(x + round_shift(s * rest, 24), 9), -65536, 65536) for x, s in zip(a, fraction)]
 
 
 def to(e: int, v: int) -> int:

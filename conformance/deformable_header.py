@@ -32,7 +32,7 @@ class DeformableObject:
     models_kept: Optional[int] = None                       # thesis
     frame_period: Optional[int] = None                      # main
     layered: Optional[int] = None                           # main
-    fade: int = 0                                           # main: share per frame, x 2^-16
+    fade: int = 0                                           # main: fraction per frame, x 2^-16
     weight_sets: int = 1                                    # main: one bit each
     rest: list[tuple] = field(default_factory=list)
     triangles: list[tuple] = field(default_factory=list)

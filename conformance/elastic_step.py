@@ -242,8 +242,8 @@ class Stepper:
             now = self.product(r, z)
             if not now > 0:
                 return
-            share = 0.0 if before is None else now / before
-            p = [a + share * b for a, b in zip(z, p)]
+            beta = 0.0 if before is None else now / before
+            p = [a + beta * b for a, b in zip(z, p)]
             before = now
             k = self.forces(p, 0.0)
             q = list(self.still)

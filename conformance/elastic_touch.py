@@ -112,8 +112,8 @@ class Surface:
         over, under = dot(minus(last, a), n), dot(minus(p, a), n)
         if not over > 0:
             return q
-        share = quotient(over, over - under)
-        return self.descend(tuple(x + share * (y - x) for x, y in zip(last, p)), q.triangle)
+        fraction = quotient(over, over - under)
+        return self.descend(tuple(x + fraction * (y - x) for x, y in zip(last, p)), q.triangle)
 
     def hold(self, p: tuple, proxy: Proxy, friction: float) -> Foot:
         a, b, c = (self.s[v] for v in self.triangles[proxy.triangle])
@@ -125,8 +125,8 @@ class Surface:
         size, rim = sqrt(dot(lag, lag)), friction * sqrt(dot(down, down))
         if size <= rim:
             return Foot(proxy.triangle, proxy.weights, held, 0.0)
-        share = quotient(rim, size)
-        return self.descend(tuple(base[i] + share * lag[i] for i in AXES), proxy.triangle)
+        fraction = quotient(rim, size)
+        return self.descend(tuple(base[i] + fraction * lag[i] for i in AXES), proxy.triangle)
 
     def touch(self, p: tuple, proxy: Proxy, first_tick: bool, coupling: float, friction: float) -> tuple[Proxy, Optional[Push]]:
         """`p` is where the device is; `first_tick`: of its frame."""

@@ -22,7 +22,7 @@ from start_models import Models
 NAMES: dict = {}                                            # by identity of a model: the model, its name
 ELEMENTS = {                                                # models, and the element of the specification that they code
     "KEY": "key", "BASELINE": "baseline_delta", "TICK": "tick_delta", "COUNT": "count", "GAP": "gap", "REASON": "reason",
-    "LEVEL": "level", "LOD": "lod less that of the baseline", "EASE": "ease", "KEEP": "keep", "PREDICTOR": "predictor", "CONTACT": "component of contact", "LAYER": "layer", "SAME_FRAME": "same_frame",
+    "LEVEL": "level", "LOD": "lod less that of the baseline", "SMOOTHING_EXP": "smoothing_exp", "RETAINED": "retained", "PREDICTOR": "predictor", "CONTACT": "component of contact", "LAYER": "layer", "SAME_FRAME": "same_frame",
     "LATE": "late",
     "TOUCHED": "touched", "SAME_TRIANGLE": "same triangle", "NEAR_TRIANGLE": "near triangle", "NEAR_PLACE": "entry of near",
     "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density", "WEIGHT_SET": "weight_set", "DRIVEN": "driven", "FADES": "fades",
@@ -165,9 +165,9 @@ def tell_rigid(packet, scene):
                 f"| decoded | {vector(state.position)} | {vector(state.rotation)} | {vector(state.velocity)} | "
                 f"{vector(state.angular_velocity)} |"]
         predictor = f", predictor {state.predictor}" if scene.motion or scene.driven else ""
-        easing = f", ease {state.ease}, keep {state.keep}" if scene.eased else ""
+        smoothing = f", smoothing_exp {state.smoothing_exp}, retained {state.retained}" if scene.smoothed else ""
         lod = f", lod {state.lod}" if scene.interest else ""
-        print(f"Object {update.object}, reason {update.reason}, level {update.level}{lod}{predictor}{easing}:\n")
+        print(f"Object {update.object}, reason {update.reason}, level {update.level}{lod}{predictor}{smoothing}:\n")
         table("| position | rotation | velocity | angular velocity", rows)
         if state.predictor == rigid.DRIVEN:
             held, point, normal, drag = state.contact

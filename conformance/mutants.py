@@ -13,7 +13,7 @@ from typing import Callable, Iterator, NamedTuple, Optional
 # Modules, and the stems whose vectors are run first against their mutants.
 MODULES = {
     "conventions": ("rigid", "scene"), "scene": ("scene",), "file": ("file",), "packet": ("packet",), "range_coder": ("range",),
-    "rigid": ("rigid",), "load": ("load",), "replica": ("client",), "curve": ("client",), "playout": ("client",), "easing": ("client",),
+    "rigid": ("rigid",), "load": ("load",), "replica": ("client",), "curve": ("client",), "playout": ("client",), "smoothing": ("client",),
     "driven": ("client",), "elastic": ("client",), "elastic_step": ("client",), "elastic_touch": ("client",), "elastic_matrix": ("client", "scene"),
     "elastic_header": ("scene",),
     "start_models": ("rigid", "deformable"),

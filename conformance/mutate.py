@@ -2,7 +2,7 @@
 """Measure the vectors: run them against mutants of the second decoder and tell which mutants no vector catches (README.md).
 
 A mutant differs from decoder.py and its modules in one place. It is caught by a vector whose answer changes, or at which it crashes
-or hangs. Exit status: 0 done, 1 the share asked for is missed or the list of equivalent mutants is wrong, 2 wrong use.
+or hangs. Exit status: 0 done, 1 the score asked for is missed or the list of equivalent mutants is wrong, 2 wrong use.
 Python's standard library only; POSIX.
 """
 from __future__ import annotations
@@ -243,7 +243,7 @@ def read_equivalent(file: Path) -> dict[str, str]:
     return dict(line.rsplit(" | ", 1) for line in lines)
 
 
-def share(mutants: list[Mutant], known: dict[str, Outcome]) -> dict:
+def score(mutants: list[Mutant], known: dict[str, Outcome]) -> dict:
     caught = sum(bool(known[m.id].by) for m in mutants)
     return {"mutants": len(mutants), "caught": caught, "percent": round(100 * caught / len(mutants), 1) if mutants else 100.0}
 
@@ -254,8 +254,8 @@ def make_report(chosen: list[Mutant], everything: list[Mutant], known: dict[str,
               "modules": {name: [m for m in counted if m.module == name] for name in MODULES}}
     ids = {m.id for m in everything}
     return {
-        "format": 1, **share(counted, known), "equivalent": len(chosen) - len(counted),
-        **{title: {name: share(of, known) for name, of in group.items() if of} for title, group in groups.items()},
+        "format": 1, **score(counted, known), "equivalent": len(chosen) - len(counted),
+        **{title: {name: score(of, known) for name, of in group.items() if of} for title, group in groups.items()},
         "survivors": [{"place": m.place(), "kind": m.mutation.kind, "id": m.id} for m in counted if not known[m.id].by],
         "not_equivalent": [m.id for m in chosen if m.id in equivalent and known[m.id].by],
         "unknown": sorted(set(equivalent) - ids)}

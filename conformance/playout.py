@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 from conventions import FNV_START, fnv1a, round_div
 from curve import NO_OFFSET, Offset, cubic, difference, displaced, offset
-from easing import eased, kept
 from rigid import Packet, motion, predict
 from scene import OUT_OF_INTEREST, Declaration, State
+from smoothing import kept, smoothed
 
-MOST_EASED = 64
+MOST_SMOOTHED = 64
 HEARD = 1024
 
 
@@ -50,7 +50,7 @@ class Playout:
         s = max(s, a.tick)
         k = known.index(a)
         path = self.between(known, k, s)
-        return eased(path, a.state, self.left(known, k), s) if self.scene.eased else path
+        return smoothed(path, a.state, self.left(known, k), s) if self.scene.smoothed else path
 
     def between(self, known: list[KnownUpdate], k: int, s: int) -> tuple[tuple, tuple]:
         """The way from update k to the next one."""
@@ -63,12 +63,12 @@ class Playout:
 
     def left(self, known: list[KnownUpdate], k: int, back: int = 0) -> Offset:
         """What is left to go at update k, `back` before the one that is shown."""
-        if k == 0 or back > MOST_EASED:
+        if k == 0 or back > MOST_SMOOTHED:
             return NO_OFFSET
         a, z = known[k].state, known[k - 1].state
         path = self.between(known, k - 1, a.tick)
-        counts = z.ease > 0 and a.tick < z.tick + (1 << z.ease)
-        return kept(eased(path, z, self.left(known, k - 1, back + 1), a.tick) if counts else path, a)
+        counts = z.smoothing_exp > 0 and a.tick < z.tick + (1 << z.smoothing_exp)
+        return kept(smoothed(path, z, self.left(known, k - 1, back + 1), a.tick) if counts else path, a)
 
     def bend(self, a: State, b: State, s: int) -> tuple[tuple, tuple]:
         scene, whole = self.scene, b.tick - a.tick

@@ -10,11 +10,11 @@ from conventions import FNV_START, clamp, fnv1a, round_div
 from curve import AT_REST, NO_OFFSET, Offset, cubic, difference, displaced, offset
 from device_path import DevicePath
 from driven import DrivenBody
-from easing import eased, kept
 from rigid import DRIVEN, Packet, motion, predict
 from scene import Declaration, State
+from smoothing import kept, smoothed
 
-SHARE = 49152                                               # P = 75 %, x 2^-16
+FRACTION = 49152                                               # P = 75 %, x 2^-16
 MOST_GAPS = 5
 LONGEST_GAP = (1 << 31) - 1
 
@@ -28,7 +28,7 @@ class ReplicaObject:
         self.index = index
         self.body: Optional[DrivenBody] = None              # of `state`, by the path as it was then known
         self.known = 0
-        self.state, self.left = state, NO_OFFSET            # `left` is of an eased scene
+        self.state, self.left = state, NO_OFFSET            # `left` is of a smoothed scene
         self.number = 0                                     # of the packet of the newest update
         self.begin = self.end = 0
         self.arrival: Optional[int] = None
@@ -39,7 +39,7 @@ class Replica:
     """What a client shows that applies packets; mode is "none", "linear", "hermite" or "blending". It may know its device."""
 
     def __init__(self, scene: Declaration, mode: str, path: Optional[DevicePath] = None):
-        self.scene, self.mode = scene, "none" if scene.eased else mode             # section 1
+        self.scene, self.mode = scene, "none" if scene.smoothed else mode             # section 1
         self.path = path
         self.shortest = round_div(5 * scene.tick_rate, 1000)
         self.longest = round_div(100 * scene.tick_rate, 1000)
@@ -60,13 +60,13 @@ class Replica:
         before, running = self.velocities(o.state, now), now < o.end
         if o.arrival is not None:
             o.gaps.append(min(now - o.arrival, LONGEST_GAP))
-        if state.ease > 0:
-            o.left = kept(self.eased(o, max(state.tick, o.state.tick)), state)
+        if state.smoothing_exp > 0:
+            o.left = kept(self.smoothed(o, max(state.tick, o.state.tick)), state)
         o.arrival, o.state = now, state
         o.begin = o.end = now
         if self.mode == "none" or running or not o.gaps:
             return
-        o.end = now + clamp(round_div(sum(o.gaps) * SHARE, len(o.gaps) << 16), self.shortest, self.longest)
+        o.end = now + clamp(round_div(sum(o.gaps) * FRACTION, len(o.gaps) << 16), self.shortest, self.longest)
         o.error = offset(self.expected(o, now), shown)
         if self.mode == "linear":
             o.change = NO_OFFSET
@@ -78,8 +78,8 @@ class Replica:
             return AT_REST
         return motion(self.scene, state, now - state.tick)
 
-    def eased(self, o: ReplicaObject, t: int) -> tuple[tuple, tuple]:
-        return eased(self.expected(o, t), o.state, o.left, t)
+    def smoothed(self, o: ReplicaObject, t: int) -> tuple[tuple, tuple]:
+        return smoothed(self.expected(o, t), o.state, o.left, t)
 
     def expected(self, o: ReplicaObject, t: int) -> tuple[tuple, tuple]:
         """By dead reckoning, or by the device of this client."""
@@ -92,7 +92,7 @@ class Replica:
     def pose(self, o: ReplicaObject, now: int) -> tuple[tuple, tuple]:
         now = max(now, o.begin)
         if now >= o.end:
-            return self.eased(o, now)
+            return self.smoothed(o, now)
         u = round_div((o.end - now) << 30, o.end - o.begin)
         c, b = cubic(u)
         k = c if self.mode == "hermite" else u

@@ -81,7 +81,7 @@ void write_bounds(const StreamBounds& bounds, std::ostream& out) {
         << int{static_cast<std::uint8_t>(t.haptic)};
     const bool weber = t.haptic == HapticRule::isotropic || t.haptic == HapticRule::cone;
     if (weber) out << ',' << bits(t.weber_fraction) << ',' << bits(t.force_floor);
-    if (t.haptic == HapticRule::perceptual) out << ',' << bits(t.perceptual_share) << ',' << bits(t.force_floor);
+    if (t.haptic == HapticRule::perceptual) out << ',' << bits(t.perceptual_fraction) << ',' << bits(t.force_floor);
     if (t.haptic == HapticRule::cone) out << ',' << bits(t.cone_angle);
     if (t.haptic == HapticRule::fixed) out << ',' << bits(t.fixed_position) << ',' << bits(t.fixed_rotation);
     out << "],";
@@ -176,10 +176,10 @@ constexpr DecodeLimits kLimits{.header_bytes = 1u << 20, .packet_bytes = 1u << 2
 /// A receiver that gets every packet at its tick and looks at every tick; in playout, at the tick that lies so far back.
 class Client {
  public:
-  /// In an eased scene no client smooths by itself.
+  /// In a smoothed scene no client smooths by itself.
   static Interpolation way_in(const Scene& scene, std::optional<Interpolation> wanted) {
     const Interpolation way = wanted.value_or(Interpolation::none);
-    return scene.is_eased && way != Interpolation::playout ? Interpolation::none : way;
+    return scene.is_smoothed && way != Interpolation::playout ? Interpolation::none : way;
   }
   static Result<Client> create(const SharedScene& scene, std::optional<Interpolation> interpolation) {
     TACTUS_TRY(Receiver receiver,

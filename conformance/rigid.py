@@ -52,17 +52,17 @@ def predict(scene: Declaration, state: State, t: int) -> tuple[tuple, tuple]:
     if dt == 0:
         return state.position, state.rotation
     shift = scene.position_exp - scene.velocity_exp
-    share = 1 << 15
+    fraction = 1 << 15
     if state.predictor == SLIDE:
-        share = (1 << 15) - round_div(dt << 22, rest) if dt << 8 <= rest else round_div(rest << 14, dt << 8)
+        fraction = (1 << 15) - round_div(dt << 22, rest) if dt << 8 <= rest else round_div(rest << 14, dt << 8)
     moved = [clamp(round_div((v * dt) << shift, scene.tick_rate), -1 << 33, 1 << 33) for v in state.velocity]
-    x = tuple(sat32(p + round_shift(m * share, 15)) for p, m in zip(state.position, moved))
+    x = tuple(sat32(p + round_shift(m * fraction, 15)) for p, m in zip(state.position, moved))
     if state.predictor == BALLISTIC:
         x = tuple(sat32(p + round_div((g * dt) << shift, 2 * scene.tick_rate)) for p, g in zip(x, gained(scene, dt)))
     speed = isqrt(sum(c * c for c in state.angular_velocity) << 10)
     if speed == 0:
         return x, state.rotation
-    angle = round_shift(round_div(speed * dt, scene.tick_rate) * share, 15)
+    angle = round_shift(round_div(speed * dt, scene.tick_rate) * fraction, 15)
     half = (((angle * HALF_RADIAN + (1 << (scene.angular_exp + 4))) % (1 << 64)) >> (scene.angular_exp + 5)) % (1 << 32)
     if half == 0:
         return x, state.rotation
@@ -208,11 +208,11 @@ class RigidDecoder:
         reason = decoder.tree(models["REASON"], 2)
         level = decoder.tree(models["LEVEL"], 4)
         lod = (moment.states[index].lod + decoder.tree(models["LOD"], 3)) % 8 if self.scene.interest else 0
-        ease = 0
-        if self.scene.eased:
+        smoothing_exp = 0
+        if self.scene.smoothed:
             usual = max(0, min(self.scene.tick_rate // 62, 255).bit_length() - 1)
-            ease = (usual - decoder.tree(models["EASE"], 3)) % 8
-        keep = decoder.tree(models["KEEP"], 2) if ease > 0 else 0
+            smoothing_exp = (usual - decoder.tree(models["SMOOTHING_EXP"], 3)) % 8
+        retained = decoder.tree(models["RETAINED"], 2) if smoothing_exp > 0 else 0
         context = reason + (4 if self.scene.driven else 0)
         predictor = decoder.tree(models[f"PREDICTOR[{context}]"], 2) if self.scene.motion or self.scene.driven else 0
         contact = moment.states[index].contact
@@ -223,7 +223,7 @@ class RigidDecoder:
         base, s = moment.states[index], level
         position, rotation = reconstruct_pose(self.scene, base, moment.tick, r, s)
         velocity, angular = reconstruct_motion(self.scene, base, moment.tick, r, s, reason)
-        moment.states[index] = State(moment.tick, position, rotation, velocity, angular, predictor, ease, keep, contact, lod)
+        moment.states[index] = State(moment.tick, position, rotation, velocity, angular, predictor, smoothing_exp, retained, contact, lod)
         return Update(index, reason, level)
 
     def declares(self, predictor: int, index: int) -> bool:
@@ -241,10 +241,10 @@ class RigidDecoder:
         states = self.receiver.current.states
         h = FNV_START
         for i in self.moving:
-            tick, *vectors, predictor, ease, keep, (held, point, normal, drag), lod = states[i]
+            tick, *vectors, predictor, smoothing_exp, retained, (held, point, normal, drag), lod = states[i]
             h = fnv1a(struct.pack("<Q13i", tick, *(c for vector in vectors for c in vector)), h)
-            if self.scene.eased:
-                h = fnv1a(struct.pack("<I", ease + 8 * keep), h)
+            if self.scene.smoothed:
+                h = fnv1a(struct.pack("<I", smoothing_exp + 8 * retained), h)
             if self.scene.motion or self.scene.driven:
                 h = fnv1a(struct.pack("<i", predictor), h)
             if self.scene.driven:

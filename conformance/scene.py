@@ -29,7 +29,7 @@ class Limits(NamedTuple):
 
 MAGIC = b"\x89TCT"
 SMALLEST_OBJECT = 32
-HAS_DEFORMABLES, HAS_LOADS, IS_EASED, HAS_MOTION, IS_DRIVEN, HAS_BODIES, HAS_INTEREST = (1 << bit for bit in range(7))   # of `flags`
+HAS_DEFORMABLES, HAS_LOADS, IS_SMOOTHED, HAS_MOTION, IS_DRIVEN, HAS_BODIES, HAS_INTEREST = (1 << bit for bit in range(7))   # of `flags`
 
 
 class Contact(NamedTuple):                                  # chapter 42, section 3
@@ -46,8 +46,8 @@ class State(NamedTuple):                                    # chapter 40
     velocity: tuple = (0, 0, 0)
     angular_velocity: tuple = (0, 0, 0)
     predictor: int = 0
-    ease: int = 0
-    keep: int = 0
+    smoothing_exp: int = 0
+    retained: int = 0
     contact: Contact = Contact()
     lod: int = 0                                            # 44, section 1
 
@@ -102,7 +102,7 @@ class Declaration:
     angular_exp: int
     max_extrapolation: int
     baseline_span: int
-    eased: bool = False
+    smoothed: bool = False
     objects: list[Object] = field(default_factory=list)
     deformables: list[DeformableObject] = field(default_factory=list)
     loads: Optional[LoadDeclaration] = None
@@ -133,14 +133,14 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(version == 1, "unsupported", "R-STR-2")
     require(profile <= 1, "malformed", "R-STR-3")
     require(profile == 0, "unsupported", "R-STR-3")
-    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_EASED + HAS_MOTION + IS_DRIVEN + HAS_BODIES + HAS_INTEREST, "malformed", "R-STR-4")
+    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_SMOOTHED + HAS_MOTION + IS_DRIVEN + HAS_BODIES + HAS_INTEREST, "malformed", "R-STR-4")
     require(body_size <= limits.body_size, "limit_exceeded", "R-STR-14")
     end = 12 + body_size
     require(len(data) >= end + 4, *STR_5)
     require(zlib.crc32(data[:end]) == int.from_bytes(data[end:end + 4], "little"), "checksum", "R-STR-15")
 
     body = Cursor(data, 12, end)
-    scene = Declaration(version, profile, *struct.unpack("<IBBBBHB", body.take(11, STR_5)), bool(flags & IS_EASED))
+    scene = Declaration(version, profile, *struct.unpack("<IBBBBHB", body.take(11, STR_5)), bool(flags & IS_SMOOTHED))
     object_count = body.varint(STR_5, STR_5_VARINT)
     check_numbers(scene)
     require(object_count <= limits.objects, "limit_exceeded", "R-STR-14")
@@ -267,8 +267,8 @@ def read_bounds(data: Cursor, scene: Declaration) -> Bounds:
         rigid += [haptic, *f64s({0: 0, 1: 2, 2: 3, 3: 2, 4: 2}[haptic])]
     deformables = []
     for _ in scene.deformables:
-        promise = choice(3)
-        deformables.append([promise, *f64s(3 if promise & 2 else 1)])
+        bound_flags = choice(3)
+        deformables.append([bound_flags, *f64s(3 if bound_flags & 2 else 1)])
     return Bounds(rigid, deformables, f64s(2) if scene.loads else None)
 
 

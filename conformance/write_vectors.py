@@ -39,7 +39,7 @@ FLAGS = {
     "substreams": "packets begin with a substream byte",
     "bounds": "the scene declaration has a bounds record",
     "loads": "the scene has loads",
-    "eased": "the scene is eased",
+    "smoothed": "the scene is smoothed",
     "motion": "the scene has motion constants",
     "driven": "the scene is driven",
     "elastic": "a deformable object has an elastic body",

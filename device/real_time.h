@@ -26,9 +26,9 @@ class Histogram {
   std::uint64_t count() const noexcept { return count_; }
   std::uint64_t longer() const noexcept { return longer_; }  ///< than 10 ms
   Time longest() const noexcept { return longest_; }
-  /// [ns] Upper end of the bin that holds this share of the durations; the longest if that is beyond the bins; 0 without any.
-  Time quantile(double share) const noexcept {
-    const auto wanted = static_cast<std::uint64_t>(share * static_cast<double>(count_));
+  /// [ns] Upper end of the bin that holds this fraction of the durations; the longest if that is beyond the bins; 0 without any.
+  Time quantile(double fraction) const noexcept {
+    const auto wanted = static_cast<std::uint64_t>(fraction * static_cast<double>(count_));
     std::uint64_t seen = 0;
     for (std::size_t bin = 0; bin < kBins; ++bin)
       if ((seen += bins_[bin]) > wanted) return (std::min)(longest_, kBin * static_cast<Time>(bin + 1));

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostSamples = 10'000'000;
 
-Vec3 between(const Vec3& a, const Vec3& b, double share) noexcept { return a + share * (b - a); }
+Vec3 between(const Vec3& a, const Vec3& b, double fraction) noexcept { return a + fraction * (b - a); }
 
 tl::unexpected<Diagnostic> refuse(const std::string& path, const Error& error, std::string detail = {}) {
   return tl::unexpected(Diagnostic{.error = error, .file = path, .detail = std::move(detail)});
@@ -88,10 +88,10 @@ Recording::Moment Recording::at(Time since) noexcept {
     return moment;
   }
   const RecordedSample& after = samples_[next_];
-  const double share = (tick - static_cast<double>(before.tick)) / static_cast<double>(after.tick - before.tick);
-  moment.sample.position = between(before.sample.position, after.sample.position, share);
-  moment.sample.velocity = between(before.sample.velocity, after.sample.velocity, share);
-  moment.force = between(before.force, after.force, share);
+  const double fraction = (tick - static_cast<double>(before.tick)) / static_cast<double>(after.tick - before.tick);
+  moment.sample.position = between(before.sample.position, after.sample.position, fraction);
+  moment.sample.velocity = between(before.sample.velocity, after.sample.velocity, fraction);
+  moment.force = between(before.force, after.force, fraction);
   return moment;
 }
 

@@ -130,9 +130,9 @@ class Scene:
         require(self.max_extrapolation >= 1, "R-STR-8")
         require(1 <= self.baseline_span <= 64, "R-STR-9")
         require(32 * object_count <= len(body.data) - body.at, "R-STR-5")
-        self.names, self.dof, self.initial = [], [], []     # a state: tick, position, rotation, velocities, ease and keep
+        self.names, self.dof, self.initial = [], [], []     # a state: tick, position, rotation, velocities, smoothing_exp and retained
         for _ in range(object_count): self.add_object(body)
-        self.eased = flags == 4
+        self.smoothed = flags == 4
         require(flags in (0, 4), "deformable objects (50), loads (45), motion constants (40, 4), driven objects (42) and interest (44) are left out here")
         self.moving = [i for i, dof in enumerate(self.dof) if dof]
 
@@ -175,7 +175,7 @@ def predict(scene, state, t):                               # 40, 4
     step = [round_shift(round_div(c << 35, speed) * sin30(half), 30) for c in o]
     return x, turned((sin30(half + ONE), *step), rotation)
 
-def update(scene, base, t, reason, level, eased, r):        # 40, 5
+def update(scene, base, t, reason, level, smoothed, r):        # 40, 5
     p, rotation = predict(scene, base, t)
     tick, _, _, v, o, _ = base
     s, dt, axes, length = level, t - tick, range(3), 1 << scene.rotation_exp
@@ -191,7 +191,7 @@ def update(scene, base, t, reason, level, eased, r):        # 40, 5
         o = [sat32(o[a] + round_div(6 * m[a] * scene.tick_rate, dt << scene.angular)) for a in axes]
     return (t, [sat32(p[a] + (r[0][a] << s)) for a in axes], rotation,
             [sat32(round_shift(v[a], s) + r[1][a] << s) for a in axes],
-            [clamp(round_shift(o[a], s) + r[3][a] << s, -1 << 25, 1 << 25) for a in axes], eased)
+            [clamp(round_shift(o[a], s) + r[3][a] << s, -1 << 25, 1 << 25) for a in axes], smoothed)
 
 class Decoder:
     """Turns packets into states (25, 5; 40, 2). Substream 0 is the only one of a scene without deformable objects."""
@@ -222,10 +222,10 @@ class Decoder:
             require(i < len(moving), "R-RIG-4")
             reason, level = payload.tree("REASON", 2), payload.tree("LEVEL", 4)
             usual = max(0, min(scene.tick_rate // 62, 255).bit_length() - 1)
-            ease = (usual - payload.tree("EASE", 3)) % 8 if scene.eased else 0          # for a client (60, 8), which is left out
-            keep = payload.tree("KEEP", 2) if ease else 0
+            smoothing_exp = (usual - payload.tree("SMOOTHING_EXP", 3)) % 8 if scene.smoothed else 0          # for a client (60, 8), which is left out
+            retained = payload.tree("RETAINED", 2) if smoothing_exp else 0
             r = residual(payload, scene.dof[moving[i]], reason)
-            states[moving[i]] = update(scene, states[moving[i]], tick, reason, level, (ease, keep), r)
+            states[moving[i]] = update(scene, states[moving[i]], tick, reason, level, (smoothing_exp, retained), r)
             named.append(moving[i])
         require(len(payload.data) <= payload.position, "R-RNG-2")
         require(payload.data[-1:] != b"\0", "R-RNG-3")

@@ -4,7 +4,7 @@
   for seed in 1 2 3 4 5; do tactus sim rotate-push-lift --pace 0.5 --tremor 0.4mm --seed $seed -o $seed.mcap; done
   figure_3_14.py fig3.14.svg 1.mcap 2.mcap 3.mcap 4.mcap 5.mcap
 
-It reads like a notebook: each part ends with a table or a figure. The thesis asked people for ratings. Their place is taken by the share
+It reads like a notebook: each part ends with a table or a figure. The thesis asked people for ratings. Their place is taken by the fraction
 of the time in which the error of the force is one that people notice. The hands were recorded without a codec between them and the
 object; `tactus reproduce fig3.14` closes that loop.
 """
@@ -47,7 +47,7 @@ matplotlib.rcParams["svg.fonttype"] = "none"  # words stay words
 
 # %% Each recording is encoded with each setting, and what its client shows is held against the truth.
 def measure(trace, bounds, interpolation):
-    """Packets per second, and share of the time with a force error that people notice [%]."""
+    """Packets per second, and fraction of the time with a force error that people notice [%]."""
     stream = tactus.encode(trace, bounds, profile="thesis")
     with tactus.Player(stream) as player:
         packets = len(player.play(1 << 31))

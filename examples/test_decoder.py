@@ -25,9 +25,9 @@ def state_hash(one: decoder.Decoder) -> str:
     """40, section 6."""
     data = b""
     for i in one.scene.moving:
-        tick, *vectors, (ease, keep) = one.states[i]
+        tick, *vectors, (smoothing_exp, retained) = one.states[i]
         data += struct.pack("<Q13i", tick, *(c for vector in vectors for c in vector))
-        data += struct.pack("<I", ease + 8 * keep) if one.scene.eased else b""
+        data += struct.pack("<I", smoothing_exp + 8 * retained) if one.scene.smoothed else b""
     return f"{fnv1a(data):016x}"
 
 

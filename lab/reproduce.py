@@ -38,7 +38,7 @@ FIGURES = {
     "fig4.6": Figure(touch.constant_push, "a push at constant speed"),
     "fig4.7": Figure(delay.rigid_impedance, "impedance of a rigid object at a client"),
     "fig4.8": Figure(touch.touch("fig4.8"), "a cube is pushed forth and back",
-                     "The figure shows ratings, which need people. This is their task; in their place, the share of the time outside of "
+                     "The figure shows ratings, which need people. This is their task; in their place, the fraction of the time outside of "
                      "the area of perceived transparency, +-10 %."),
     "fig4.10": Figure(touch.touch("fig4.10"), "two users push a block side by side"),
     "fig4.11": Figure(touch.touch("fig4.11"), "one user pushes a block, another presses on it"),

@@ -30,11 +30,11 @@ void DelayTolerance::Touch::add(std::optional<double> most, double follows) {
   if (*most < kLongest) ++bins_[static_cast<std::uint32_t>(*most / kBin)];
 }
 
-std::optional<double> DelayTolerance::Touch::quantile(double share) const noexcept {
+std::optional<double> DelayTolerance::Touch::quantile(double fraction) const noexcept {
   std::uint64_t seen = 0;
   for (const auto& [bin, ticks] : bins_) {
     seen += ticks;
-    if (static_cast<double>(seen) >= share * static_cast<double>(pressing_)) return kBin * (bin + 1.0);
+    if (static_cast<double>(seen) >= fraction * static_cast<double>(pressing_)) return kBin * (bin + 1.0);
   }
   return std::nullopt;
 }
@@ -62,8 +62,8 @@ void DelayTolerance::add(const TraceFrame& frame, const Follows& follows) {
     const auto velocity = users_[i].velocity(tick_);
     if (!velocity) continue;
     const auto add_to = [&](const Pair& pair, double k) {
-      const double share = follows ? follows(pair, user) : 1;
-      touches_[pair].add(tolerable_round_trip(user.server_force, *velocity, share * k, weber_), share);
+      const double fraction = follows ? follows(pair, user) : 1;
+      touches_[pair].add(tolerable_round_trip(user.server_force, *velocity, fraction * k, weber_), fraction);
     };
     if (user.contact.kind != ContactKind::none) add_to({i, false, user.contact.object}, user.contact.stiffness);
     if (user.surface_contact) add_to({i, true, user.surface_contact->mesh}, user.surface_contact->stiffness);

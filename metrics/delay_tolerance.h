@@ -7,7 +7,7 @@
 ///
 /// v_p is the speed of the device against f_s: motion along a surface stretches nothing. Equation 4.31 takes force and speed along the
 /// motion, which is the same where they are parallel. Who does not go against the force feels no delay.
-/// A deformable object follows a share K < 1 of the way only (eq. 4.54) and bears 1 / K times as much.
+/// A deformable object follows a fraction K < 1 of the way only (eq. 4.54) and bears 1 / K times as much.
 #pragma once
 
 #include <array>
@@ -50,9 +50,9 @@ class DelayTolerance {
     void add(std::optional<double> most, double follows);
     std::uint64_t ticks() const noexcept { return ticks_; }
     std::uint64_t pressing() const noexcept { return pressing_; }  ///< ticks in which delay adds force
-    /// [s] R_max that a share of the pressing ticks does not reach, within kBin; none: longer than kLongest, or nobody pressed
-    std::optional<double> quantile(double share) const noexcept;
-    /// Share of all ticks in which a round trip of kRoundTrips[i] is felt.
+    /// [s] R_max that a fraction of the pressing ticks does not reach, within kBin; none: longer than kLongest, or nobody pressed
+    std::optional<double> quantile(double fraction) const noexcept;
+    /// Fraction of all ticks in which a round trip of kRoundTrips[i] is felt.
     double felt(std::size_t i) const noexcept;
 
     double follows() const noexcept { return ticks_ == 0 ? 1 : follows_ / static_cast<double>(ticks_); }  ///< mean of K

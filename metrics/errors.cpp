@@ -48,7 +48,7 @@ bool ErrorMetrics::breaks_rule(const Pose& truth, const Pose& shown, const Vec3&
 
 /// Below the force floor the permitted error stays that of the floor, as in the haptic rule.
 bool ErrorMetrics::is_perceptible(double force, double error) const noexcept {
-  return error > perceptual_fraction(force) * std::max(force, bounds_.force_floor);
+  return error > weber_fraction_at(force) * std::max(force, bounds_.force_floor);
 }
 
 void ErrorMetrics::add(const TraceFrame& truth, std::span<const Pose> shown, std::span<const std::uint8_t> levels) noexcept {

@@ -30,10 +30,10 @@ void DeformableRates::add(std::size_t packet_bytes, std::uint64_t update_count, 
   of.bytes += packet_bytes;
 }
 
-std::uint32_t DeformableRates::quantile(double share) const {
+std::uint32_t DeformableRates::quantile(double fraction) const {
   if (sizes.empty()) return 0;
   std::vector<std::uint32_t> sorted = sizes;
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+  const auto rank = static_cast<std::size_t>(std::ceil(fraction * static_cast<double>(sorted.size())));
   const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
   std::nth_element(sorted.begin(), at, sorted.end());
   return *at;

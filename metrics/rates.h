@@ -49,7 +49,7 @@ struct DeformableRates {
   std::array<OfLayer, 2> layers{};  ///< index: Layer; of packets known to be of one
 
   void add(std::size_t packet_bytes, std::uint64_t update_count, bool key, Layer layer);
-  std::uint32_t quantile(double share) const;  ///< of the packets' sizes [bytes]; 1: the largest, 0 without packets
+  std::uint32_t quantile(double fraction) const;  ///< of the packets' sizes [bytes]; 1: the largest, 0 without packets
 };
 
 }  // namespace tactus

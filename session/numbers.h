@@ -107,7 +107,7 @@ class SentNumbers {
   const std::optional<RoundTrip>& round_trip() const noexcept { return round_trip_; }
   /// Round trip of the last acknowledgement that measured one [us].
   std::optional<std::int64_t> sample() const noexcept { return sample_; }
-  /// Share of the newest 256 numbers whose fate is known, of 128 if these are fewer, x 2^-16.
+  /// Fraction of the newest 256 numbers whose fate is known, of 128 if these are fewer, x 2^-16.
   std::uint32_t loss() const noexcept;
   std::uint64_t highest_acknowledged() const noexcept { return highest_; }
   bool has_arrived(std::uint64_t number) const noexcept {

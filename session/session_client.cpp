@@ -470,14 +470,14 @@ std::optional<std::uint64_t> SessionClient::round_trip_shown(std::uint64_t now) 
 }
 
 /// Without news none; nor for a state that is ahead of all news, or too old whatever came.
-double SessionClient::force_share(std::uint64_t now) noexcept {
+double SessionClient::force_fraction(std::uint64_t now) noexcept {
   Impl& in = *impl_;
   shown_tick(now);  // of it the ages are
   if (!in.feels) in.fade.release(now);
   const bool is_live = in.state == SessionState::live;
   std::uint64_t heard = is_live ? in.current->exchange.heard_at() : 0;
   if (is_live) heard = std::min(heard, now - std::min(now, static_cast<std::uint64_t>(in.current->playout->ahead())));
-  return std::ldexp(static_cast<double>(in.fade.share(now, heard, round_trip_shown(now).value_or(0))), -16);
+  return std::ldexp(static_cast<double>(in.fade.fraction(now, heard, round_trip_shown(now).value_or(0))), -16);
 }
 
 std::uint64_t SessionClient::unanswered(std::uint64_t now) const noexcept {

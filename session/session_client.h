@@ -29,7 +29,7 @@ struct SessionStatus {
   std::optional<RoundTrip> round_trip;
   std::optional<std::int64_t> clock_offset;  ///< [us] the server's clock less the client's
   std::int64_t playout_delay = 0;            ///< [us] behind the fastest packet
-  double loss = 0;                           ///< share of the last 256 datagrams to the server
+  double loss = 0;                           ///< fraction of the last 256 datagrams to the server
   Traffic traffic;
 };
 
@@ -76,8 +76,8 @@ class SessionClient {
   /// [us] How old the tick that shown_tick() told last is as an answer to the own device: R of thesis chapter 4, playout included.
   /// Nothing: not known yet.
   std::optional<std::uint64_t> round_trip_shown(std::uint64_t now) const noexcept;
-  /// Share of a force that may be rendered: without news none.   out  0 to 1
-  double force_share(std::uint64_t now) noexcept;
+  /// Fraction of a force that may be rendered: without news none.   out  0 to 1
+  double force_fraction(std::uint64_t now) noexcept;
   SessionStatus status() const noexcept;
   std::uint64_t unanswered(std::uint64_t now) const noexcept;  ///< [us] for how long an answer of the server is missing
 

@@ -33,7 +33,7 @@ struct ClientStatus {
   std::uint8_t seat = 0, wanted_seat = 0;  ///< from 1; 0: none, any
   std::uint64_t heard = 0;                 ///< [us] when its newest datagram came
   std::optional<RoundTrip> round_trip;
-  double loss = 0;      ///< share of the last 256 datagrams to the client
+  double loss = 0;      ///< fraction of the last 256 datagrams to the client
   double widening = 1;  ///< factor of the bounds now
   Widening widened;     ///< since it joined
   Traffic traffic;
@@ -55,7 +55,7 @@ struct ServerEvent {
 };
 
 /// Threads: one at a time. No call on the way of a datagram allocates but those that bring a client live; none throws.
-/// More clients than a thread can serve: several servers of the same scene and options, each on a thread of its own with its share of the
+/// More clients than a thread can serve: several servers of the same scene and options, each on a thread of its own with its part of the
 /// addresses, that submit the same truth. What a client is sent depends on no other client once each server has one, so nothing is locked:
 /// each tick begins when the world has made the truth, and the world waits until all servers have submitted it. Each needs its own entropy.
 class SessionServer {

@@ -77,7 +77,7 @@ constexpr std::int64_t kShrink = 100;                          // [us] in this t
 constexpr std::int64_t kLong = 150'000;                        // [us]: what is above goes sooner
 constexpr std::uint64_t kUndecided = 1'000'000;  // [us] in which a change is found to be one of the way or of a clock
 constexpr std::int64_t kAnswer = 10'000, kMargin = 10'000, kApart = 10'000;  // [us] of an acknowledgement; beyond; between copies
-constexpr std::uint32_t kLossy = 65536 / 333, kLossier = 65536 / 20, kLossiest = 65536 * 3 / 20;  // shares x 2^-16
+constexpr std::uint32_t kLossy = 65536 / 333, kLossier = 65536 / 20, kLossiest = 65536 * 3 / 20;  // fractions x 2^-16
 constexpr std::int64_t kLeastJitter = 20'000;                                                     // [us]
 constexpr std::int64_t kMostJitter = 50'000;  // [us] of round trips: what is above is a standstill or a queue
 constexpr std::uint64_t kOvertaken = 5'000;   // [us] that a packet waits for one that is not lost but late

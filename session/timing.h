@@ -55,7 +55,7 @@ class LossBursts {
   /// Ticks from the state before to the state after two thirds of the bursts, at most; 0: most losses are single ones.
   /// in   longest  [ticks]; longer ones are outages, which no delay bridges      time O(1024)
   std::int64_t bridge(std::int64_t longest, std::uint64_t now) noexcept;
-  /// Share of the newest 256 numbers that did not come, of 128 if fewer are known, x 2^-16.   time O(1024)
+  /// Fraction of the newest 256 numbers that did not come, of 128 if fewer are known, x 2^-16.   time O(1024)
   std::uint32_t loss(std::uint64_t now) const noexcept;
 
  private:
@@ -229,8 +229,8 @@ class DevicePace {
 // ==== force fade ====
 // Old data pushes nobody. spec/70-session.md section 10.
 
-/// Share of a force that a client may render, by the age of its news: all of it up to `fresh`, none from `stale` on, straight between.
-/// When news come again, or share() is called again after a pause, it returns over `kReturn`.
+/// Fraction of a force that a client may render, by the age of its news: all of it up to `fresh`, none from `stale` on, linear between.
+/// When news come again, or fraction() is called again after a pause, it returns over `kReturn`.
 class ForceFade {
  public:
   struct Limits {
@@ -246,22 +246,22 @@ class ForceFade {
 
   /// The device feels nothing: a new contact need not rise slowly.
   void release(std::uint64_t now) noexcept {
-    share_ = kAll;
+    fraction_ = kAll;
     looked_at_ = now;
   }
 
   /// in   now >= heard  [us]; `now` never decreases;  old  [us] age of the state that is shown.   out  x 2^-16
-  std::int64_t share(std::uint64_t now, std::uint64_t heard, std::uint64_t old = 0) noexcept {
+  std::int64_t fraction(std::uint64_t now, std::uint64_t heard, std::uint64_t old = 0) noexcept {
     const std::int64_t most = std::min(left(now - heard, limits_), left(old, kOld));
     if (now - looked_at_ > limits_.stale) {  // nobody looked: what was felt meanwhile is not known
-      share_ = 0;
+      fraction_ = 0;
       looked_at_ = now;
     }
     const std::uint64_t passed = now - looked_at_;
-    const auto risen = share_ + static_cast<std::int64_t>(passed * static_cast<std::uint64_t>(kAll) / kReturn);
-    if (risen > share_ || most < share_) looked_at_ = now;
-    share_ = std::min(most, risen);
-    return share_;
+    const auto risen = fraction_ + static_cast<std::int64_t>(passed * static_cast<std::uint64_t>(kAll) / kReturn);
+    if (risen > fraction_ || most < fraction_) looked_at_ = now;
+    fraction_ = std::min(most, risen);
+    return fraction_;
   }
 
  private:
@@ -271,7 +271,7 @@ class ForceFade {
   }
 
   Limits limits_ = kUsual;
-  std::int64_t share_ = 0;
+  std::int64_t fraction_ = 0;
   std::uint64_t looked_at_ = 0;
 };
 

@@ -271,10 +271,10 @@ void Client::touch(std::size_t user, const DeviceSample& device, const Rendering
   }
   if (compensation_ && !contacts_[user]) compensation_->release(user);
   if (prediction_) measured(costs_.compensation, [&] { prediction_->step(device); });
-  felt_[user] = how.share * share_rendered(force, scene_.users[user].device.max_force) * force;
+  felt_[user] = how.fraction * rendered_fraction(force, scene_.users[user].device.max_force) * force;
   if (ports_.empty()) return;
   const Vec3 passive = ports_[user].limit(device.position, felt_[user]);
-  felt_[user] = share_rendered(passive, scene_.users[user].device.max_force) * passive;
+  felt_[user] = rendered_fraction(passive, scene_.users[user].device.max_force) * passive;
 }
 
 const Pose& Client::watched(std::size_t user) const noexcept {

@@ -92,7 +92,7 @@ class Client {
   void touch(std::span<const DeviceSample> devices) noexcept;
   /// How a force is rendered.
   struct Rendering {
-    double share = 1;         ///< of it
+    double fraction = 1;         ///< of it
     std::uint32_t delay = 0;  ///< [ticks] of what is shown; 0: there is none to make up for
   };
   /// A network shows nothing any more: the receiver of the last show() is gone, or not to be read. What was shown stays.

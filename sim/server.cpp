@@ -16,7 +16,7 @@ Server::Server(const Scene& scene, const ServerOptions& options)
       noise_(~options.seed),
       noise_reach_(std::sqrt(3.0) * options.mesh_noise),
       held_(scene.users.size(), 1),
-      shares_(scene.users.size(), 1) {
+      fractions_(scene.users.size(), 1) {
   const std::size_t objects = scene.objects.size() + scene.msds.size();
   frame_.objects.resize(objects);
   frame_.changed.emplace().reserve(objects);
@@ -94,7 +94,7 @@ Result<void> Server::add_codec(const ServerCodec& codec) {
     if (auto physics = elastic_physics(scene_.deformables[i], scene_.gravity, deformables_->info()[i].shared, codec.told))
       builder.elastic(std::move(*physics));
   }
-  builder.promise(codec.sender.triggers, codec.sender.deformable.thresholds, codec.sender.load);
+  builder.declare_bounds(codec.sender.triggers, codec.sender.deformable.thresholds, codec.sender.load);
   constexpr std::uint8_t kBaselines = 64;
   if (codec.sessions) builder.baselines(kBaselines);
   if (codec.sessions && scene_.interest) builder.interest(scene_.interest->full, scene_.interest->reach);
@@ -126,8 +126,8 @@ void Server::touch(std::span<const DeviceSample> devices) noexcept {
       if (touch.surface) user.surface_contact = touch.surface;
       user.server_force = user.server_force + touch.force;
     }
-    shares_[i] = held_[i] * share_rendered(user.server_force, scene_.users[i].device.max_force);
-    user.force = user.server_force = shares_[i] * user.server_force;
+    fractions_[i] = held_[i] * rendered_fraction(user.server_force, scene_.users[i].device.max_force);
+    user.force = user.server_force = fractions_[i] * user.server_force;
     if (!user.surface_contact) continue;
     // A user who touches a sleeping object needs its shape at haptic, not visual, accuracy.
     DeformableSample& mesh = frame_.meshes[user.surface_contact->mesh];
@@ -149,8 +149,8 @@ Result<std::span<const Packet>> Server::encode() noexcept {
 std::span<const HeldPart> Server::held() const noexcept { return sender_ ? sender_->held() : std::span<const HeldPart>(); }
 
 tl::expected<void, Diagnostic> Server::step() {
-  for (std::size_t i = 0; i < shares_.size(); ++i)
-    for (const auto& objects : objects_) objects->push(i, shares_[i]);
+  for (std::size_t i = 0; i < fractions_.size(); ++i)
+    for (const auto& objects : objects_) objects->push(i, fractions_[i]);
   for (const auto& objects : objects_) TACTUS_CHECK(objects->step());
   return {};
 }

@@ -49,8 +49,8 @@ class Server {
   /// Move every user's probe; write contacts and forces to frame(). The force that a hand felt is the server's there, until whoever has
   /// clients that tell theirs writes it.   in  devices  one per user   no allocation
   void touch(std::span<const DeviceSample> devices) noexcept;
-  /// Of the force of this user's hand only a share acts from now on: 0 lifts it off, 1 sets it down.
-  void lift(std::size_t user, double share) noexcept { held_[user] = share; }
+  /// Of the force of this user's hand only a fraction acts from now on: 0 lifts it off, 1 sets it down.
+  void lift(std::size_t user, double fraction) noexcept { held_[user] = fraction; }
   /// Packets of this tick for the clients; valid until the next call.   err  errors of Sender::encode   no allocation
   Result<std::span<const Packet>> encode() noexcept;
   std::span<const HeldPart> held() const noexcept;  ///< Sender::held() of them
@@ -88,8 +88,8 @@ class Server {
   std::optional<Sender> sender_;
   std::optional<FrameTruth> truth_;
   TraceFrame frame_;
-  std::vector<double> held_;    // share of each user's force that acts
-  std::vector<double> shares_;  // of each user's force that the device renders, times that
+  std::vector<double> held_;    // fraction of each user's force that acts
+  std::vector<double> fractions_;  // of each user's force that the device renders, times that
 };
 
 }  // namespace tactus::sim

@@ -33,7 +33,7 @@ struct Simulation::Impl {
   PerfectLink link;
   std::vector<std::optional<DeviceContact>> contacts;  // of the devices, in the tick before
   std::vector<std::int64_t> shown;                     // tick, at each user's client
-  std::vector<double> shares;                          // of the force that it renders
+  std::vector<double> fractions;                          // of the force that it renders
   std::vector<std::uint32_t> delays;                   // [ticks] of what it shows
   std::vector<Hand> hands;                             // one per user, like the vectors below
   std::vector<DeviceSample> devices;                   // of the hands
@@ -74,7 +74,7 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   impl->aims.assign(scene.users.size(), TouchRecord::Aim::unknown);
   impl->contacts.resize(scene.users.size());
   impl->shown.assign(scene.users.size(), -1);
-  impl->shares.assign(scene.users.size(), 1);
+  impl->fractions.assign(scene.users.size(), 1);
   impl->delays.assign(scene.users.size(), 0);
   return Simulation(std::move(impl));
 }
@@ -123,11 +123,11 @@ void Simulation::Impl::render(std::span<const DeviceSample> at_clients) noexcept
   for (std::size_t i = 0; i < clients.size(); ++i) {
     const Network::View view = network->view(i);
     shown[i] = view.tick;
-    shares[i] = view.force_share;
+    fractions[i] = view.force_fraction;
     delays[i] = view.delay;
     if (view.tick >= 0) clients[i]->show(*view.receiver, view.tick);
     else clients[i]->show_nothing();
-    clients[i]->touch(i, at_clients[i], {view.force_share, view.delay});
+    clients[i]->touch(i, at_clients[i], {view.force_fraction, view.delay});
     contacts[i] = clients[i]->contact(i);
   }
 }
@@ -162,7 +162,7 @@ const Pose& Simulation::watched(std::size_t user) const noexcept { return impl_-
 std::int64_t Simulation::shown_tick(std::size_t user) const noexcept {
   return impl_->network ? impl_->shown[user] : impl_->server->frame().tick;
 }
-double Simulation::share_rendered(std::size_t user) const noexcept { return impl_->contacts[user] ? impl_->shares[user] : 1; }
+double Simulation::rendered_fraction(std::size_t user) const noexcept { return impl_->contacts[user] ? impl_->fractions[user] : 1; }
 double Simulation::round_trip(std::size_t user) const noexcept { return kTick * impl_->delays[user]; }
 double Simulation::stiffness(std::size_t user) const noexcept { return impl_->client(user).stiffness(user); }
 std::optional<Vec3> Simulation::touched_point(std::size_t user) const noexcept {

@@ -81,7 +81,7 @@ class Simulation {
   const Pose& watched(std::size_t user) const noexcept;  ///< pose of the object that this user looks at, as shown
   /// The tick whose state the user's client shows: with a network one of the past, -1 before the first.
   std::int64_t shown_tick(std::size_t user) const noexcept;
-  double share_rendered(std::size_t user) const noexcept;  ///< of the force: less than 1 while the data are old
+  double rendered_fraction(std::size_t user) const noexcept;  ///< of the force: less than 1 while the data are old
   double round_trip(std::size_t user) const noexcept;      ///< [s] age of what is shown, as an answer to the device; 0: not known
   double stiffness(std::size_t user) const noexcept;       ///< [N/m] with which the user's force was rendered; 0: none was
   std::optional<Vec3> touched_point(

@@ -21,8 +21,8 @@ struct Touch {
   Vec3 force;                               ///< [N] on the hand, world frame
 };
 
-/// The share of a force that a device renders whose largest force is `limit` [N].
-inline double share_rendered(const Vec3& force, double limit) noexcept {
+/// The fraction of a force that a device renders whose largest force is `limit` [N].
+inline double rendered_fraction(const Vec3& force, double limit) noexcept {
   const double magnitude = norm(force);
   return magnitude > limit ? limit / magnitude : 1;
 }
@@ -52,8 +52,8 @@ class Simulated : public Touchable {
  public:
   /// Write their part of the frame: the state of this tick, before its forces act.   no allocation
   virtual void observe(TraceFrame& frame) noexcept = 0;
-  /// Apply `share` of the reaction to the user's last force to the object touched.   no allocation
-  virtual void push(std::size_t user, double share) noexcept = 0;
+  /// Apply `fraction` of the reaction to the user's last force to the object touched.   no allocation
+  virtual void push(std::size_t user, double fraction) noexcept = 0;
   /// Advance by one tick.
   /// err  the broken rule, with the tick as the step and the object as the element: its index in the frame's objects or meshes
   virtual tl::expected<void, Diagnostic> step() = 0;

@@ -26,7 +26,7 @@ static_assert(TACTUS_INTERPOLATION_NONE == static_cast<int>(Interpolation::none)
 
 constexpr tactus_receiver_options kOptions{.size = sizeof(tactus_receiver_options),
                                            .interpolation = TACTUS_INTERPOLATION_NONE,
-                                           .share = ReplicaOptions{}.share,
+                                           .fraction = ReplicaOptions{}.fraction,
                                            .shortest = ReplicaOptions{}.shortest,
                                            .longest = ReplicaOptions{}.longest,
                                            .limits = nullptr};
@@ -44,7 +44,7 @@ Result<ReceiverOptions> options_of(const tactus_receiver_options* options) noexc
   if (o.interpolation < TACTUS_INTERPOLATION_NONE || o.interpolation > TACTUS_INTERPOLATION_PLAYOUT)
     return fail(Errc::invalid_argument, "R-API-4");
   return ReceiverOptions{.replica = {.interpolation = static_cast<Interpolation>(o.interpolation),
-                                     .share = o.share,
+                                     .fraction = o.fraction,
                                      .shortest = o.shortest,
                                      .longest = o.longest},
                          .limits = limits};

@@ -50,7 +50,7 @@ tactus_scene_info info_of(const Scene& scene) noexcept {
           .position_exp = scene.grid.position,
           .extrapolation = scene.max_extrapolation,
           .baselines = scene.baseline_span,
-          .eased = scene.is_eased,
+          .smoothed = scene.is_smoothed,
           .has_bounds = scene.bounds.has_value(),
           .has_loads = scene.loads.has_value(),
           .load_users = scene.loads ? scene.loads->users : 0u,

@@ -314,7 +314,7 @@ tactus_status tactus_find_clusters(const double* vertices, size_t vertex_count, 
   });
 }
 
-tactus_status tactus_scene_builder_promise(tactus_scene_builder* builder, const tactus_rigid_bounds* rigid,
+tactus_status tactus_scene_builder_declare_bounds(tactus_scene_builder* builder, const tactus_rigid_bounds* rigid,
                                            const tactus_deformable_bounds* deformable, const tactus_load_bounds* load,
                                            tactus_error* error) {
   return call(error, [&]() -> Outcome {
@@ -322,7 +322,7 @@ tactus_status tactus_scene_builder_promise(tactus_scene_builder* builder, const 
     TACTUS_TRY(const RigidTriggers triggers, bounds_of(rigid));
     TACTUS_TRY(const DeformableThresholds thresholds, bounds_of(deformable));
     TACTUS_TRY(const LoadThresholds loads, bounds_of(load));
-    builder->builder.promise(triggers, thresholds, loads);
+    builder->builder.declare_bounds(triggers, thresholds, loads);
     return TACTUS_OK;
   });
 }

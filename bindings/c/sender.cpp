@@ -30,15 +30,15 @@ constexpr tactus_sender_options kOptions{.size = sizeof(tactus_sender_options),
                                          .baseline = static_cast<std::int32_t>(SenderPolicy{}.baseline),
                                          .first_sequence = SenderPolicy{}.first_sequence,
                                          .key_interval = SenderPolicy{}.key_interval,
-                                         .visual_share = 0,
-                                         .haptic_share = 0,
+                                         .visual_fraction = 0,
+                                         .haptic_fraction = 0,
                                          .layered = 0,
                                          .reserved = 0,
                                          .rigid = nullptr,
                                          .deformable = nullptr,
                                          .load = nullptr};
 
-std::optional<double> share_of(double share) noexcept { return share == 0 ? std::nullopt : std::optional(share); }
+std::optional<double> fraction_of(double fraction) noexcept { return fraction == 0 ? std::nullopt : std::optional(fraction); }
 
 tactus_packet_info info_of(const Scene& scene, const Packet& packet, std::int64_t tick) noexcept {
   return {.size = 0,
@@ -67,8 +67,8 @@ Result<SenderOptions> options_of(const tactus_sender_options* options) noexcept 
   TACTUS_TRY(out.triggers, bounds_of(o.rigid));
   out.triggers.reduction = static_cast<Reduction>(o.reduction);
   TACTUS_TRY(out.deformable.thresholds, bounds_of(o.deformable));
-  out.deformable.visual_share = share_of(o.visual_share);
-  out.deformable.haptic_share = share_of(o.haptic_share);
+  out.deformable.visual_fraction = fraction_of(o.visual_fraction);
+  out.deformable.haptic_fraction = fraction_of(o.haptic_fraction);
   out.deformable.layered = o.layered != 0;
   TACTUS_TRY(out.load, bounds_of(o.load));
   out.policy = {.key_interval = o.key_interval,

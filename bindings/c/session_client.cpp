@@ -235,10 +235,10 @@ tactus_status tactus_client_shown_tick(tactus_client* client, uint64_t now, int6
   });
 }
 
-tactus_status tactus_client_force_share(tactus_client* client, uint64_t now, double* share, tactus_error* error) {
+tactus_status tactus_client_force_fraction(tactus_client* client, uint64_t now, double* fraction, tactus_error* error) {
   return call_at(client, now, error, [&](SessionClient& session) -> Outcome {
-    if (share == nullptr) return refuse();
-    *share = session.force_share(now);
+    if (fraction == nullptr) return refuse();
+    *fraction = session.force_fraction(now);
     return TACTUS_OK;
   });
 }

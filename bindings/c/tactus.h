@@ -125,7 +125,7 @@ typedef struct tactus_rigid_bounds {
   double visual_position;  /* m; 3e-4 */
   double visual_rotation;  /* rad; 2 deg */
   double weber_fraction;   /* p; 0.04 */
-  double perceptual_share; /* 1 */
+  double perceptual_fraction; /* 1 */
   double cone_angle;       /* rad; 2.1 deg */
   double fixed_position;   /* m; 0.0015 */
   double fixed_rotation;   /* rad; 2 deg */
@@ -201,7 +201,7 @@ typedef struct tactus_scene_info {
   uint32_t position_exp;  /* positions are multiples of 2^-position_exp m */
   uint32_t extrapolation; /* ticks after which an object without updates stops */
   uint32_t baselines;
-  uint32_t eased; /* 1: rigid objects are of profile main */
+  uint32_t smoothed; /* 1: rigid objects are of profile main */
   uint32_t has_bounds;
   uint32_t has_loads, load_users;
   double interest_full, interest_reach; /* m: within these a client is told of rigid objects; 0: of all */
@@ -275,7 +275,7 @@ enum {
 typedef struct tactus_receiver_options {
   uint32_t size;
   int32_t interpolation;       /* TACTUS_INTERPOLATION_...; none */
-  double share;                /* 0.75 of the mean of the last 5 inter-arrival times */
+  double fraction;                /* 0.75 of the mean of the last 5 inter-arrival times */
   double shortest;             /* s; 0.005 */
   double longest;              /* s; 0.1 */
   const tactus_limits* limits; /* NULL: defaults */

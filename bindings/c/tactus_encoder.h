@@ -21,7 +21,7 @@ typedef struct tactus_scene_options {
   uint32_t tick_rate;                                                      /* per second; 1000 */
   uint32_t position_exp, velocity_exp, rotation_exp, angular_velocity_exp; /* grids; 22 17 20 12 */
   uint32_t baselines;     /* states that a receiver keeps, 1 to 64; 1. A session wants 64 */
-  uint32_t rigid_profile; /* TACTUS_PROFILE_...; main: velocities lean towards the acceleration, and clients ease into updates */
+  uint32_t rigid_profile; /* TACTUS_PROFILE_...; main: look-ahead velocities, and clients smooth the errors of updates */
   uint32_t has_loads;     /* 1: tell the forces on rigid objects; 0 */
   uint32_t load_users;    /* whose forces are told; 1 */
   uint32_t force_exp;     /* forces are multiples of 2^-force_exp N; 10 */
@@ -33,7 +33,7 @@ typedef struct tactus_scene_options {
      and of none beyond interest_reach; 0: of all in full */
   double interest_full, interest_reach;
   /* m: how far from the origin positions get, along any axis. The position grid becomes as fine as that permits, and none finer than
-     position_exp; _build refuses a world too large for the promised bounds. 0: as position_exp is: 2^(31 - position_exp) m, 512 m */
+     position_exp; _build refuses a world too large for the declared bounds. 0: as position_exp is: 2^(31 - position_exp) m, 512 m */
   double world_size;
   const tactus_limits* limits; /* of all its receivers: for more than 4096 objects, say. NULL: defaults */
 } tactus_scene_options;
@@ -48,7 +48,7 @@ typedef struct tactus_deformable_options {
   uint32_t weight_sets;  /* main; 0: chosen */
   uint32_t spring_modes; /* main: modes of a network of springs that both ends compute; 0 */
   double frame_period;   /* main: ticks from shape to shape; 1 */
-  double fade;           /* main, with a basis: share of corrections that fades per second; -1: chosen */
+  double fade;           /* main, with a basis: fraction of corrections that fades per second; -1: chosen */
   const uint32_t* fixed; /* spring_modes: vertices that do not move, ascending */
   size_t fixed_count;
   const double* vectors;   /* a basis to declare: modes x vertices x 3, any scale; NULL */
@@ -125,7 +125,7 @@ TACTUS_API tactus_status tactus_find_clusters(const double* vertices, size_t ver
                                               size_t triangle_count, const float* shapes, size_t shape_count, uint32_t most,
                                               uint8_t* clusters, uint32_t* count, uint32_t* blend, tactus_error* error);
 /* Declare the bounds that hold at a client: those of its sender. NULL: defaults. */
-TACTUS_API tactus_status tactus_scene_builder_promise(tactus_scene_builder* builder, const tactus_rigid_bounds* rigid,
+TACTUS_API tactus_status tactus_scene_builder_declare_bounds(tactus_scene_builder* builder, const tactus_rigid_bounds* rigid,
                                                       const tactus_deformable_bounds* deformable, const tactus_load_bounds* load,
                                                       tactus_error* error);
 /* Check everything and make the scene. The builder is empty then, also after an error. */
@@ -148,8 +148,8 @@ typedef struct tactus_sender_options {
   int32_t baseline;        /* TACTUS_BASELINE_...; previous */
   uint32_t first_sequence; /* 1 */
   double key_interval;     /* s; 5; 0: never */
-  double visual_share;     /* deformable, main: a packet corrects errors over this share of v; 0: chosen */
-  double haptic_share;     /* the same of h */
+  double visual_fraction;     /* deformable, main: a packet corrects errors over this fraction of v; 0: chosen */
+  double haptic_fraction;     /* the same of h */
   uint32_t layered;        /* deformable, thesis: separate packets for the layers; 0 */
   uint32_t reserved;
   const tactus_rigid_bounds* rigid; /* NULL: defaults, as the next two */
@@ -239,7 +239,7 @@ TACTUS_API tactus_status tactus_sender_request_key(tactus_sender* sender, tactus
 /* A receiver has decoded a packet: TACTUS_BASELINE_ACKNOWLEDGED builds on it. */
 TACTUS_API tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32_t substream, uint32_t sequence,
                                                    tactus_error* error);
-/* in   answer  [ticks] until a packet is acknowledged, 0: not known;  loss  share of packets */
+/* in   answer  [ticks] until a packet is acknowledged, 0: not known;  loss  fraction of packets */
 TACTUS_API tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t answer, double loss, tactus_error* error);
 /* In a scene with interest: where the receiver looks from, from the next tick on. Before the first call it is told of all in full.
    in   places  x y z of each [m, world], two at most: others do not count;  count  0: it looks from nowhere that is known */

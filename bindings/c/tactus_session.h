@@ -66,7 +66,7 @@ typedef struct tactus_session_status {
   int64_t clock_offset;                                            /* client: us, the server's clock less the client's */
   uint64_t server_start;                                           /* client: us, the server's clock at tick 0 */
   int64_t playout_delay;                                           /* client: us behind the fastest packet */
-  double loss;                                                     /* share of the last 256 datagrams to the other end */
+  double loss;                                                     /* fraction of the last 256 datagrams to the other end */
   double widening, widest;                                         /* server: factor of the bounds, now and at most */
   uint64_t widened_time;                                           /* server: us */
   uint64_t datagrams_sent, bytes_sent, packets_sent, payload_sent; /* payload: bytes of packets */
@@ -180,8 +180,8 @@ TACTUS_API tactus_status tactus_client_next_timeout(const tactus_client* client,
 TACTUS_API tactus_receiver* tactus_client_receiver(tactus_client* client);
 /* TACTUS_NOTHING: none yet */
 TACTUS_API tactus_status tactus_client_shown_tick(tactus_client* client, uint64_t now, int64_t* tick, tactus_error* error);
-/* Share of a force that may be rendered, 0 to 1: without news none. */
-TACTUS_API tactus_status tactus_client_force_share(tactus_client* client, uint64_t now, double* share, tactus_error* error);
+/* Fraction of a force that may be rendered, 0 to 1: without news none. */
+TACTUS_API tactus_status tactus_client_force_fraction(tactus_client* client, uint64_t now, double* fraction, tactus_error* error);
 TACTUS_API tactus_status tactus_client_status(const tactus_client* client, tactus_session_status* status, tactus_error* error);
 
 #ifdef __cplusplus

@@ -118,7 +118,7 @@ Result<std::vector<std::uint8_t>> declaration(const tactus_trace& trace, const t
                             .basis = {},
                             .clusters = std::move(clusters),
                             .rigid = static_cast<RigidProfile>(coding.rigid_profile)}));
-  builder.baselines(static_cast<std::uint8_t>(coding.baselines)).promise(rigid, deformable);
+  builder.baselines(static_cast<std::uint8_t>(coding.baselines)).declare_bounds(rigid, deformable);
   if (coding.world_size != 0) builder.world_size(coding.world_size);
   TACTUS_TRY(const SharedScene scene, std::move(builder).build());
   return write_scene(*scene);

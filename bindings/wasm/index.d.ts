@@ -57,7 +57,7 @@ export interface RigidBounds {
   readonly visualPosition: number;    // m
   readonly visualRotation: number;    // rad
   readonly weberFraction: number;
-  readonly perceptualShare: number;
+  readonly perceptualFraction: number;
   readonly coneAngle: number;         // rad
   readonly fixedPosition: number;     // m
   readonly fixedRotation: number;     // rad
@@ -77,7 +77,7 @@ export class Scene {
   readonly tickRate: number;      // per second
   readonly substreams: number;
   readonly positionExp: number;   // positions are multiples of 2^-positionExp m
-  readonly eased: boolean;
+  readonly smoothed: boolean;
   readonly loadUsers: number | null;
   readonly bytes: number | null;  // that parseScene took
   readonly rigid: readonly {readonly name: string; readonly dof: number; readonly initial: Pose}[];

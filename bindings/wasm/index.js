@@ -138,7 +138,7 @@ export class Scene {
     this.tickRate = info.tick_rate;
     this.substreams = info.substreams;
     this.positionExp = info.position_exp;
-    this.eased = info.eased !== 0;
+    this.smoothed = info.smoothed !== 0;
     this.loadUsers = info.has_loads ? info.load_users : null;
     this.rigid = Array.from({length: info.rigid}, (_, i) => this.#rigid(i));
     this.deformables = Array.from({length: info.deformables}, (_, i) => this.#deformable(i));
@@ -186,7 +186,7 @@ export class Scene {
     const bounds = this.#tactus.ask("tactus_rigid_bounds", "tactus_scene_get_rigid_bounds", this.handle);
     return bounds && {
       haptic: hapticRules[bounds.haptic], heartbeat: bounds.heartbeat, visualPosition: bounds.visual_position,
-      visualRotation: bounds.visual_rotation, weberFraction: bounds.weber_fraction, perceptualShare: bounds.perceptual_share,
+      visualRotation: bounds.visual_rotation, weberFraction: bounds.weber_fraction, perceptualFraction: bounds.perceptual_fraction,
       coneAngle: bounds.cone_angle, fixedPosition: bounds.fixed_position, fixedRotation: bounds.fixed_rotation,
       forceFloor: bounds.force_floor,
     };

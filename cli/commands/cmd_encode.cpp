@@ -205,7 +205,7 @@ Outcome run(const EncodeOptions& options) {
     report.timings = {{"encode"}, {"decode"}};
   }
   add_meshes(reader->info(), options.meshes, options.triggers, report);
-  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.is_main();
+  for (MeshReport& mesh : report.meshes) mesh.guaranteed = options.meshes.is_main();
   TACTUS_CHECK(encode_all(*reader, *session, frame, contacts, options, report));
   TACTUS_CHECK(check_ending(options.input, *reader, report.ticks.count()));
   report.add(reader->notes());

@@ -145,7 +145,7 @@ Json topics_json(const std::vector<TraceTopic>& topics) {
   return list;
 }
 
-/// Users who feel forces without any contact: of them a stream promises nothing.
+/// Users who feel forces without any contact: for them a stream declares no bounds.
 class UnboundForces {
  public:
   explicit UnboundForces(const TraceInfo& info) : info_(info), users_(info.users.size()) {}

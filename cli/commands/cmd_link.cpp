@@ -152,8 +152,8 @@ Value value_of(const ForwardOptions& options, const Forwarder& forwarder, double
   std::vector<Microseconds> late = forwarder.lateness();
   if (late.empty()) return out;
   std::ranges::sort(late);
-  const auto at = [&](double share) {
-    return 1e-6 * static_cast<double>(late[static_cast<std::size_t>(share * static_cast<double>(late.size() - 1))]);
+  const auto at = [&](double fraction) {
+    return 1e-6 * static_cast<double>(late[static_cast<std::size_t>(fraction * static_cast<double>(late.size() - 1))]);
   };
   out["lateness"] = {{"p50_s", at(0.5)}, {"p99_s", at(0.99)}, {"max_s", at(1)}};
   return out;

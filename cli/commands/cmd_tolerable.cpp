@@ -47,13 +47,13 @@ Value value_of(const TolerableOptions& options, const TraceInfo& info, const Del
                {"seconds", seconds(info, touch.ticks())},
                {"pressing_seconds", seconds(info, touch.pressing())},
                {"follows", touch.follows()}};
-    const auto limit = [&entry, &touch = touch](const char* key, double share) {
-      if (const auto most = touch.quantile(share)) entry[key] = *most;
+    const auto limit = [&entry, &touch = touch](const char* key, double fraction) {
+      if (const auto most = touch.quantile(fraction)) entry[key] = *most;
     };
     limit("tolerable_p5_s", 0.05);
     limit("tolerable_p50_s", 0.5);
     for (std::size_t i = 0; i < DelayTolerance::kRoundTrips.size(); ++i)
-      entry["felt"].push_back({{"round_trip_s", DelayTolerance::kRoundTrips[i]}, {"share", touch.felt(i)}});
+      entry["felt"].push_back({{"round_trip_s", DelayTolerance::kRoundTrips[i]}, {"fraction", touch.felt(i)}});
     out["touches"].push_back(std::move(entry));
   }
   if (!is_scene && !info.meshes.empty())
@@ -62,9 +62,9 @@ Value value_of(const TolerableOptions& options, const TraceInfo& info, const Del
 }
 
 /// Over the round trip, how much of the time in contact it is felt: a line for each touch.
-Figure share_figure(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance) {
+Figure fraction_figure(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance) {
   constexpr int kSteps = 100;
-  Panel panel{"share of the time in contact [%]"};
+  Panel panel{"fraction of the time in contact [%]"};
   for (const auto& [pair, touch] : tolerance.touches()) {
     Panel::Line& line =
         panel.lines.emplace_back(Panel::Line{fmt::format("{}, {}", info.users[pair.user].name, name_of(info, pair)), {}});
@@ -100,7 +100,7 @@ tl::expected<DelayTolerance, Failure> of_trace(const TolerableOptions& options, 
 Outcome report(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance, bool is_scene) {
   if (tolerance.touches().empty())
     return refuse(shown_path(options.input) + ": nobody touches anything", "Give a recording or a scene with contacts.");
-  TACTUS_CHECK(draw(options.plot, share_figure(options, info, tolerance), options.common));
+  TACTUS_CHECK(draw(options.plot, fraction_figure(options, info, tolerance), options.common));
   print(value_of(options, info, tolerance, is_scene), "tolerable", options.common);
   return {};
 }
@@ -151,13 +151,13 @@ void setup_tolerable(Command& app, Action& action) {
       ->show_default()
       ->type_name("N");
 #endif
-  add_plot_option(command, options->plot, "the share of the time in contact over the round trip that is felt");
+  add_plot_option(command, options->plot, "the fraction of the time in contact over the round trip that is felt");
   add_output_options(command, options->common);
   command.footer(
       "A client learns of an object's motion a round trip late. Meanwhile a hand that presses goes further into what the client\n"
-      "shows, and feels more than at the server (thesis eqs. 4.17 to 4.20, 4.31). What is deformable follows only a share of "
+      "shows, and feels more than at the server (thesis eqs. 4.17 to 4.20, 4.31). What is deformable follows only a fraction of "
       "the\n"
-      "device's way, and bears as much more; a recording does not tell which share (eq. 4.54).\n"
+      "device's way, and bears as much more; a recording does not tell which fraction (eq. 4.54).\n"
       "Examples:\n  tactus sim push-1dof -o push.mcap && tactus tolerable push.mcap\n  tactus tolerable membrane");
   on_chosen<TolerableOptions>(command, action, options, run);
 }

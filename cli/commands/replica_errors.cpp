@@ -59,20 +59,20 @@ void add_errors(const TraceFrame& truth, const ShownByReplica& shown, Report& re
       report.meshes[i].fidelity->add(truth.meshes[i].displacements, shown.shapes[i], touch_of(truth, i));
 }
 
-void judge_by(const TypedBounds* typed, const TraceInfo& info, const std::optional<TraceBounds>& promised, Report& report) {
+void judge_by(const TypedBounds* typed, const TraceInfo& info, const std::optional<TraceBounds>& declared, Report& report) {
   const bool is_typed = typed != nullptr && (typed->triggers.any_given() || typed->meshes.any_given());
-  report.bounds_from = is_typed ? "options" : promised ? "stream" : "defaults";
-  const RigidTriggers rigid = promised && promised->stream.rigid ? *promised->stream.rigid : RigidTriggers{};
+  report.bounds_from = is_typed ? "options" : declared ? "stream" : "defaults";
+  const RigidTriggers rigid = declared && declared->stream.rigid ? *declared->stream.rigid : RigidTriggers{};
   report.fidelity.emplace(info, typed != nullptr ? typed->triggers.over(rigid) : rigid);
   for (std::size_t i = 0; i < info.meshes.size(); ++i) {
-    const DeformableBounds bounds = promised ? promised->stream.deformables[i] : DeformableBounds{};
+    const DeformableBounds bounds = declared ? declared->stream.deformables[i] : DeformableBounds{};
     if (report.meshes.size() == i)
       report.meshes.push_back({.name = info.meshes[i].name, .vertices = info.meshes[i].rest.vertices.size()});
-    const std::uint8_t rings = promised ? promised->rings[i] : DeformableObject{}.rings;
+    const std::uint8_t rings = declared ? declared->rings[i] : DeformableObject{}.rings;
     report.meshes[i].fidelity.emplace(
         info.meshes[i].rest, typed != nullptr ? typed->meshes.over(bounds.thresholds, typed->triggers) : bounds.thresholds,
-        typed != nullptr ? typed->meshes.rings(rings) : rings, promised ? promised->position_exp : GridExponents{}.position);
-    report.meshes[i].promised = bounds.kept || is_typed;
+        typed != nullptr ? typed->meshes.rings(rings) : rings, declared ? declared->position_exp : GridExponents{}.position);
+    report.meshes[i].guaranteed = bounds.kept || is_typed;
   }
 }
 

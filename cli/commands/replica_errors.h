@@ -38,6 +38,6 @@ struct TypedBounds {
 /// Errors by bounds, which come from the options, else from the stream, else from the defaults.
 /// in   typed  null: the command has no such options
 ///      info   of the truth
-void judge_by(const TypedBounds* typed, const TraceInfo& info, const std::optional<TraceBounds>& promised, Report& report);
+void judge_by(const TypedBounds* typed, const TraceInfo& info, const std::optional<TraceBounds>& declared, Report& report);
 
 }  // namespace tactus::cli

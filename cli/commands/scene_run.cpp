@@ -70,11 +70,11 @@ tl::expected<const TraceFrame*, Failure> TolerableScene::next() {
 double TolerableScene::follows(const DelayTolerance::Pair& pair, const UserSample& user) const noexcept {
   if (pair.is_mesh) {
     const SurfaceContact& at = *user.surface_contact;
-    return share_followed(maps_[at.mesh].at(at.triangle, at.weights), at.stiffness);
+    return followed_fraction(maps_[at.mesh].at(at.triangle, at.weights), at.stiffness);
   }
   const std::size_t rigid = scene_->objects.size();
   if (user.contact.object < rigid) return 1;
-  return share_followed(scene_->msds[user.contact.object - rigid].object.stiffness, user.contact.stiffness);
+  return followed_fraction(scene_->msds[user.contact.object - rigid].object.stiffness, user.contact.stiffness);
 }
 
 }  // namespace tactus::cli

@@ -70,8 +70,8 @@ Vec3 FeltRecording::spring(const Vec3& way, const Vec3& hand, Time into, Time no
     place_ = hand;
     placed_ = now;
   }
-  const double share = std::min(static_cast<double>(into) / static_cast<double>(kGrowth), 1.0);
-  return share * (stiffness_ * way - kDamping * speed_);
+  const double fraction = std::min(static_cast<double>(into) / static_cast<double>(kGrowth), 1.0);
+  return fraction * (stiffness_ * way - kDamping * speed_);
 }
 
 FeltRecording::Distance FeltRecording::distance() const noexcept {

@@ -116,7 +116,7 @@ void add_each(Exposition& out, const ServerFigures& figures, std::string_view na
 void add_paths(Exposition& out, const ServerFigures& figures) {
   add_each(out, figures, "tactus_client_round_trip_seconds", "Round trip to a live client, smoothed; 0: not known yet.",
            [](const ClientStatus& c) { return c.round_trip ? static_cast<double>(c.round_trip->smoothed) / 1e6 : 0.0; });
-  add_each(out, figures, "tactus_client_loss_ratio", "Share of the last 256 datagrams to a live client that were lost.",
+  add_each(out, figures, "tactus_client_loss_ratio", "Fraction of the last 256 datagrams to a live client that were lost.",
            [](const ClientStatus& c) { return c.loss; });
   add_each(out, figures, "tactus_client_widening_ratio",
            "Factor of the error bounds of a live client now; 1: as they were asked for.",

@@ -133,8 +133,8 @@ Ticker::Woken Ticker::wait(int socket, std::uint64_t timeout) {
   }
 }
 
-double Ticker::lateness(double share) const noexcept {
-  const auto wanted = static_cast<std::uint64_t>(share * static_cast<double>(ticks_));
+double Ticker::lateness(double fraction) const noexcept {
+  const auto wanted = static_cast<std::uint64_t>(fraction * static_cast<double>(ticks_));
   std::uint64_t seen = 0;
   for (std::size_t bin = 0; bin < kBins; ++bin)
     if ((seen += bins_[bin]) >= wanted && seen > 0) return 10.0 * static_cast<double>(bin + 1);

@@ -87,8 +87,8 @@ class Ticker {
   std::int64_t tick() const noexcept { return static_cast<std::int64_t>(ticks_ + missed_) - 1; }
   std::uint64_t ticks() const noexcept { return ticks_; }  ///< that began
   std::uint64_t missed() const noexcept { return missed_; }
-  /// [us] Lateness below which this share of the ticks began; of those that were late by more than 10 ms it is 10 ms.
-  double lateness(double share) const noexcept;
+  /// [us] Lateness below which this fraction of the ticks began; of those that were late by more than 10 ms it is 10 ms.
+  double lateness(double fraction) const noexcept;
 
  private:
   bool begin(std::uint64_t now) noexcept;

@@ -23,7 +23,7 @@ std::string names_of(const std::vector<sim::SceneUser>& users) {
 }
 
 Pace pace_of(const device::ServoTimes& times) {
-  const auto us = [&](double share) { return 1e-3 * static_cast<double>(times.lateness.quantile(share)); };
+  const auto us = [&](double fraction) { return 1e-3 * static_cast<double>(times.lateness.quantile(fraction)); };
   return {times.ticks, times.missed, us(0.5), us(0.99)};
 }
 
@@ -261,7 +261,7 @@ Outcome Visit::render(std::uint64_t now) {
   else own.client->show_nothing();
   const auto delay =
       static_cast<std::uint32_t>((session_.round_trip_shown(now).value_or(0) * sim::kTickRate + 500'000) / 1'000'000);
-  own.client->touch(own.user, own.sample, {session_.force_share(now), delay});
+  own.client->touch(own.user, own.sample, {session_.force_fraction(now), delay});
   if (const auto exerted = own.servo->exert(own.client->felt(own.user)); !exerted)
     return refuse_device(own.chosen.device->capabilities().name, exerted.error());
   largest_force = std::max(largest_force, norm(own.client->felt(own.user)));

@@ -61,7 +61,7 @@ constexpr std::array kOptions{
     Row{"--deadband", kBounds},
     Row{"--haptic", kBounds},
     Row{"--alpha", kBounds},
-    Row{"--jnd-share", kBounds},
+    Row{"--jnd-fraction", kBounds},
     Row{"--fixed", kBounds},
     Row{"--force-floor", kBounds},
     Row{"--visual", kBounds},

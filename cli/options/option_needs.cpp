@@ -28,7 +28,7 @@ constexpr std::array kAgreements{
               {"isotropic", "cone", "fixed", "perceptual"}},  // the last two: it is that of meshes
     Agreement{"--alpha", "--haptic", "isotropic", {"cone"}},
     Agreement{"--fixed", "--haptic", "isotropic", {"fixed"}},
-    Agreement{"--jnd-share", "--haptic", "isotropic", {"perceptual"}},
+    Agreement{"--jnd-fraction", "--haptic", "isotropic", {"perceptual"}},
     Agreement{"--force-floor", "--haptic", "isotropic", {"isotropic", "cone", "perceptual"}},
     Agreement{"--layered", "--haptic", "isotropic", {"isotropic", "cone", "fixed", "perceptual"}},
     Agreement{"--rings", "--haptic", "isotropic", {"isotropic", "cone", "fixed", "perceptual"}},
@@ -57,7 +57,7 @@ constexpr std::array kNeeds{
     Need{"--haptic", Subject::rigid, "cone"},
     Need{"--haptic", Subject::rigid, "fixed"},
     Need{"--haptic", Subject::rigid, "perceptual"},
-    Need{"--jnd-share", Subject::rigid},
+    Need{"--jnd-fraction", Subject::rigid},
     Need{"--alpha", Subject::rigid},
     Need{"--fixed", Subject::rigid},
     Need{"--force-floor", Subject::rigid},

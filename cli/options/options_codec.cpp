@@ -85,7 +85,7 @@ void TriggerArguments::add_to(Command& app) {
              "--haptic", rule,
              "Haptic threshold: isotropic (bounds the error of the normal force in all directions alike), cone (bounds its "
              "amount by -p "
-             "and its direction by --alpha), fixed (bounds the pose by --fixed), perceptual (isotropic, by the share that people "
+             "and its direction by --alpha), fixed (bounds the pose by --fixed), perceptual (isotropic, by the fraction that people "
              "notice: 10 % of 2.5 N to 22 % of 0.3 N) or off [isotropic]")
           ->one_of({"isotropic", "cone", "fixed", "perceptual", "off"})
           ->type_name("RULE");
@@ -94,13 +94,13 @@ void TriggerArguments::add_to(Command& app) {
           app, "--alpha", triggers_.cone_angle, Dimension::angle,
           "Largest error of the normal force's direction with --haptic cone [arcsin of -p, what isotropic allows: 2.29deg at 4%]")
           ->check(within(Dimension::angle, "0.001deg", "180deg"));
-  share_ = add_quantity(app, "--jnd-share", triggers_.perceptual_share, Dimension::fraction,
-                        "Part of what people notice that --haptic perceptual permits, 1% or more [100%]")
+  jnd_fraction_ = add_quantity(app, "--jnd-fraction", triggers_.perceptual_fraction, Dimension::fraction,
+                        "Fraction of the just noticeable difference that --haptic perceptual permits, 1% or more [100%]")
                ->check(within(Dimension::fraction, "1%", "100%"));
   floor_ = add_quantity(app, "--force-floor", triggers_.force_floor, Dimension::force,
                         "Forces below this use the deadband at this force [0.05N]")
                ->check(above_zero(Dimension::force));
-  options_ = {deadband_, visual_option_, haptic_, alpha_, share_, fixed_option_, floor_, length_unit_option_};
+  options_ = {deadband_, visual_option_, haptic_, alpha_, jnd_fraction_, fixed_option_, floor_, length_unit_option_};
   app.on_parsed([this] { check_lengths(); });  // only now --length-unit is known
 }
 
@@ -151,7 +151,7 @@ RigidTriggers TriggerArguments::over(RigidTriggers out) const {
   if (deadband_->count() > 0) out.weber_fraction = triggers_.weber_fraction;
   if (alpha_->count() > 0) out.cone_angle = triggers_.cone_angle;
   else if (haptic_->count() > 0 && out.haptic == HapticRule::cone) out.cone_angle = isotropic_angle(out.weber_fraction);
-  if (share_->count() > 0) out.perceptual_share = triggers_.perceptual_share;
+  if (jnd_fraction_->count() > 0) out.perceptual_fraction = triggers_.perceptual_fraction;
   if (floor_->count() > 0) out.force_floor = triggers_.force_floor;
   if (visual_option_->count() > 0) {
     out.visual_position = scaled(visual_.length);
@@ -199,12 +199,12 @@ void MeshArguments::add_encoder_to(Command& app) {
       app.add_option("--basis", modes_, "Vibration modes that both ends compute from the mesh, 0: none (--profile main) [0]")
           ->check(whole_number(0, ModeBasis::kMaxModes))
           ->type_name("K");
-  shares_[0] =
-      add_quantity(app, "--visual-share", visual_share_, Dimension::fraction,
-                   "A packet of a deformable object corrects errors above this share of --deformable-visual, 0.1% or more "
+  fractions_[0] =
+      add_quantity(app, "--visual-share", visual_fraction_, Dimension::fraction,
+                   "A packet of a deformable object corrects errors above this fraction of --deformable-visual, 0.1% or more "
                    "(--profile main) [100%, or 70% for more than 100 shapes/s]")
           ->check(within(Dimension::fraction, "0.1%", "100%"));
-  shares_[1] = add_quantity(app, "--haptic-share", haptic_share_, Dimension::fraction,
+  fractions_[1] = add_quantity(app, "--haptic-share", haptic_fraction_, Dimension::fraction,
                             "The same of -p's bound, 0.1% or more (--profile main) [as --visual-share]")
                    ->check(within(Dimension::fraction, "0.1%", "100%"));
   const std::map<std::string, std::uint8_t> nuggets{{"2%", 1}, {"5%", 2}, {"30%", 4}, {"all", 7}};
@@ -215,12 +215,12 @@ void MeshArguments::add_encoder_to(Command& app) {
               "--profile", profile,
               "Coding tools: thesis (of rigid objects dead reckoning, their true velocities, and jumps that a client may smooth "
               "by "
-              "--interpolate) or main (velocities that lean towards the acceleration, updates that clients ease into) [main]")
+              "--interpolate) or main (look-ahead velocities, and error smoothing over updates) [main]")
            ->one_of({"thesis", "main"})
            ->type_name("NAME"),
        modes,
-       fade_ = add_quantity(app, "--fade", fade_share_, Dimension::fraction,
-                            "Share of the corrections outside the basis that fades per second (with a basis) [98%, or 0% for a "
+       fade_ = add_quantity(app, "--fade", fade_fraction_, Dimension::fraction,
+                            "Fraction of the corrections outside the basis that fades per second (with a basis) [98%, or 0% for a "
                             "--deformable-visual of 0.01mm and less]")
                    ->check(within(Dimension::fraction, "0%", "100%")),
        app.add_option(
@@ -228,8 +228,8 @@ void MeshArguments::add_encoder_to(Command& app) {
               "How much of a vertex's movement its neighbours do not share: 2%, 5%, 30%, or all for a choice per packet, at "
               "two to four times the cost (--profile main) [5% with --basis and a --deformable-visual above 0.01mm, else 2%]")
            ->one_of({"2%", "5%", "30%", "all"})
-           ->type_name("SHARE"),
-       shares_[0], shares_[1],
+           ->type_name("FRACTION"),
+       fractions_[0], fractions_[1],
        app.add_option("--quant-bits", coding_.quant_bits, "Bits of the quantiser, 1 to 12 (--profile thesis) [8]")
            ->check(whole_number(1, DeformableObject::kMaxQuantBits))
            ->type_name("Q"),
@@ -256,14 +256,14 @@ SenderOptions MeshArguments::sender(const TriggerArguments& triggers) const {
   };
   return {
       .triggers = triggers.triggers(),
-      .deformable = {thresholds(triggers), typed(shares_[0], visual_share_), typed(shares_[1], haptic_share_), coding_.layered},
+      .deformable = {thresholds(triggers), typed(fractions_[0], visual_fraction_), typed(fractions_[1], haptic_fraction_), coding_.layered},
       .policy = {.key_interval = triggers.key_interval()}};
 }
 
 TraceCoding MeshArguments::coding(const TriggerArguments& triggers) const {
   TraceCoding out{.deformable = coding_, .spring_modes = static_cast<std::uint8_t>(modes_)};
-  if (fade_ != nullptr && fade_->count() > 0) out.deformable.fade = fade_share_;
-  if (!is_main() || !triggers.reduces()) out.rigid = RigidProfile::thesis;  // what goes out at every tick needs no easing
+  if (fade_ != nullptr && fade_->count() > 0) out.deformable.fade = fade_fraction_;
+  if (!is_main() || !triggers.reduces()) out.rigid = RigidProfile::thesis;  // what goes out at every tick needs no smoothing
   return out;
 }
 

@@ -55,7 +55,7 @@ class TriggerArguments {
   double length_unit_ = 1;
   double key_interval_ = SenderPolicy{}.key_interval;
   bool no_reduction_ = false;
-  const Option *deadband_ = nullptr, *haptic_ = nullptr, *alpha_ = nullptr, *share_ = nullptr, *floor_ = nullptr,
+  const Option *deadband_ = nullptr, *haptic_ = nullptr, *alpha_ = nullptr, *jnd_fraction_ = nullptr, *floor_ = nullptr,
                *visual_option_ = nullptr, *fixed_option_ = nullptr, *length_unit_option_ = nullptr;
   std::vector<const Option*> options_;
 };
@@ -91,8 +91,8 @@ class MeshArguments {
   DeformableThresholds thresholds_;
   DeformableCoding coding_;
   std::uint32_t modes_ = 0;
-  double visual_share_ = 1, haptic_share_ = 1, fade_share_ = 0;
-  const Option *visual_ = nullptr, *rings_ = nullptr, *fade_ = nullptr, *shares_[2]{};  // visual, haptic
+  double visual_fraction_ = 1, haptic_fraction_ = 1, fade_fraction_ = 0;
+  const Option *visual_ = nullptr, *rings_ = nullptr, *fade_ = nullptr, *fractions_[2]{};  // visual, haptic
   std::vector<const Option*> options_;
 };
 

@@ -91,8 +91,8 @@ Parsed<void> read_delays(sim::LinkOptions& link, Text value) {
 }
 
 Parsed<void> read_late(sim::LinkOptions& link, Text value) {
-  const auto [share, by] = split<2>(value, '/');
-  TACTUS_CHECK(put(link.held_back, quantity(share, Dimension::fraction)));
+  const auto [fraction, by] = split<2>(value, '/');
+  TACTUS_CHECK(put(link.held_back, quantity(fraction, Dimension::fraction)));
   return put(link.held_back_by, time(by));
 }
 
@@ -165,9 +165,9 @@ const char* link_help() {
          "  jitter=5ms             more, uniform from 0 to this; datagrams overtake each other\n"
          "  gamma=20ms/10ms/1s     more, gamma-distributed: mean/deviation/how long a value stays\n"
          "  delays=FILE            more, recorded: CSV with the columns time_s,delay_s; repeated\n"
-         "  loss=1%  burst=5       share of datagrams lost; mean length of a row of losses\n"
-         "  duplicates=1%          share that arrives twice\n"
-         "  late=1%/30ms           share that comes so much later\n"
+         "  loss=1%  burst=5       fraction of datagrams lost; mean length of a row of losses\n"
+         "  duplicates=1%          fraction that arrives twice\n"
+         "  late=1%/30ms           fraction that comes so much later\n"
          "  rate=1Mbit  queue=64kB bottleneck and the queue before it, headers included\n"
          "  outage=10s+500ms       nothing passes, from when for how long; may be repeated\n"
          "  seed=1                 the same seed gives the same network";

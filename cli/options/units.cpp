@@ -70,7 +70,7 @@ T or_usage_error(const std::string& option, tl::expected<T, std::string> parsed)
   return *parsed;
 }
 
-/// A share is at most 1: a bare 4 is meant as 4 %, which it is not.
+/// A fraction is at most 1: a bare 4 is meant as 4 %, which it is not.
 tl::expected<Quantity, std::string> checked(std::string_view text, const Quantity& quantity, Dimension dimension) {
   if (!std::isfinite(quantity.value)) return tl::unexpected(fmt::format("'{}': too large", text));
   if (dimension != Dimension::fraction || quantity.value <= 1) return quantity;

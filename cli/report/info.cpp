@@ -62,10 +62,10 @@ Json mesh_header_json(const DeformableObject& mesh, std::uint32_t tick_rate) {
   return out;
 }
 
-/// Shares of what would be sent without reduction need the trace.
-Json without_shares(Json traffic) {
+/// Fractions of what would be sent without reduction need the trace.
+Json without_fractions(Json traffic) {
   for (const char* name : {"payload", "with_udp_ipv4"})
-    for (const char* share : {"reduction_from_24_byte_states", "reduction_from_48_byte_states"}) traffic[name].erase(share);
+    for (const char* fraction : {"reduction_from_24_byte_states", "reduction_from_48_byte_states"}) traffic[name].erase(fraction);
   traffic.erase("reduction_of_updates");
   return traffic;
 }
@@ -136,8 +136,8 @@ Value stream_info_value(const Player& player, const StreamTotals& totals, std::u
            {"stream", stream_value(report)}};
   if (end.error) out["broken"] = {{"byte", end.error->bit_offset / 8}, {"rule", end.error->rule}};
   if (report.traffic) {
-    out["profile"] = h.is_eased ? "main" : "thesis";
-    out["traffic"] = without_shares(Json(rigid_traffic_value(report)));
+    out["profile"] = h.is_smoothed ? "main" : "thesis";
+    out["traffic"] = without_fractions(Json(rigid_traffic_value(report)));
     out["grid_levels"] = totals.levels;
     if (totals.rigid.packets > 0) {
       out["traffic"]["min_bytes"] = totals.rigid.smallest;

@@ -53,9 +53,9 @@ void StepTimes::add(Cost cost) {
   cpu_ns_.push_back(cost.cpu_ns);
 }
 
-double StepTimes::quantile(TimeOf which, double share) const {
+double StepTimes::quantile(TimeOf which, double fraction) const {
   std::vector<std::int64_t> sorted = times(which);
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+  const auto rank = static_cast<std::size_t>(std::ceil(fraction * static_cast<double>(sorted.size())));
   const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
   std::nth_element(sorted.begin(), at, sorted.end());
   return 1e-9 * static_cast<double>(*at);
@@ -75,7 +75,7 @@ bool has_errors(const ErrorMetrics& f) { return f.position().ticks() > 0 || f.re
 
 /// Errors of one quantity: of ticks, or of vertices in all frames.
 Json series_json(std::uint64_t samples, std::uint64_t over, double mse, double max) {
-  return {{"samples", samples},    {"over", over}, {"share_over", per(static_cast<double>(over), static_cast<double>(samples))},
+  return {{"samples", samples},    {"over", over}, {"fraction_over", per(static_cast<double>(over), static_cast<double>(samples))},
           {"rms", std::sqrt(mse)}, {"mse", mse},   {"max", max}};
 }
 
@@ -116,7 +116,7 @@ Json mesh_json(const MeshReport& mesh, double seconds) {
   if (mesh.traffic) out["traffic"] = mesh_traffic_value(mesh, seconds);
   if (mesh.fidelity) {
     const DeformableErrors& f = *mesh.fidelity;
-    out["bounds"] = mesh_bounds_value(f.bounds(), f.rings(), mesh.promised);
+    out["bounds"] = mesh_bounds_value(f.bounds(), f.rings(), mesh.guaranteed);
     out["error"] = {{"frames", f.frames()}, {"worst_ratio", f.worst_ratio()}, {"position_m", series_json(f.all())}};
     out["error"]["haptic_area_m"] = series_json(f.area());
     out["error"]["haptic_area_m"]["mean_bound"] = f.mean_haptic();
@@ -222,14 +222,14 @@ Json check_json(const CheckReport& c) {
 void add_particulars(Json& out, const Report& r) {
   if (r.seed) out["seed"] = *r.seed;
   if (r.segments) out["segments"] = *r.segments;
-  constexpr std::array kWays{"direct", "eased", "interpolated"};
+  constexpr std::array kWays{"direct", "smoothed", "interpolated"};
   if (r.client) out["client"] = kWays[static_cast<std::size_t>(*r.client)];
   for (const DeformableReport& d : r.deformables) out["solvers"].push_back(solver_json(d));
   for (const CheckReport& check : r.checks) out["checks"].push_back(check_json(check));
   if (r.rigid) out["rigid"] = rigid_json(*r.rigid);
   for (const TouchReport& t : r.touches) {
     out["touches"].push_back({{"user", t.user},
-                              {"share", t.share},
+                              {"contact_fraction", t.contact_fraction},
                               {"contacts", t.contacts},
                               {"contacts_most_in_a_second", t.most_in_a_second},
                               {"largest_force_N", t.largest_force},
@@ -293,7 +293,7 @@ std::string broken_bounds(const Report& r) {
     if (f.bounds().haptic != HapticRule::off) look("contact force in", f.force().ticks_over(), f.force().ticks(), "tick");
   }
   for (const MeshReport& mesh : r.meshes)
-    if (mesh.fidelity && mesh.promised)
+    if (mesh.fidelity && mesh.guaranteed)
       look(shown(mesh.name) + " at", mesh.fidelity->all().violations, mesh.fidelity->all().vertices, "vertex");
   return text;
 }
@@ -455,8 +455,8 @@ Value stream_value(const Report& r) {
 Value bounds_value(const RigidTriggers& b) {
   Json out{{"position_m", b.visual_position}, {"rotation_rad", b.visual_rotation}, {"haptic_rule", name_of(b.haptic)}};
   const bool is_constant = b.haptic == HapticRule::isotropic || b.haptic == HapticRule::cone;
-  if (is_constant) out["haptic_fraction"] = b.weber_fraction;
-  if (b.haptic == HapticRule::perceptual) out["perceptual_share"] = b.perceptual_share;
+  if (is_constant) out["weber_fraction"] = b.weber_fraction;
+  if (b.haptic == HapticRule::perceptual) out["perceptual_fraction"] = b.perceptual_fraction;
   if (is_constant || b.haptic == HapticRule::perceptual) out["force_floor_N"] = b.force_floor;
   if (b.haptic == HapticRule::cone) out["haptic_angle_rad"] = b.cone_angle;
   if (b.haptic == HapticRule::fixed) {
@@ -466,13 +466,13 @@ Value bounds_value(const RigidTriggers& b) {
   return out;
 }
 
-Value mesh_bounds_value(const DeformableThresholds& b, std::uint8_t rings, bool promised) {
+Value mesh_bounds_value(const DeformableThresholds& b, std::uint8_t rings, bool guaranteed) {
   Json out{{"position_m", b.visual},
            {"haptic_rule", b.weber_fraction ? "isotropic" : "off"},
            {"rings", rings},
-           {"promised", promised}};
+           {"guaranteed", guaranteed}};
   if (b.weber_fraction) {
-    out["haptic_fraction"] = *b.weber_fraction;
+    out["weber_fraction"] = *b.weber_fraction;
     out["depth_floor_m"] = b.depth_floor;
   }
   return out;

@@ -58,7 +58,7 @@ class StepTimes {
   void add(Cost cost);
   bool empty() const noexcept { return wall_ns_.empty(); }
   std::size_t count() const noexcept { return wall_ns_.size(); }
-  double quantile(TimeOf which, double share) const;  ///< [s]; 1: the longest.   pre  not empty
+  double quantile(TimeOf which, double fraction) const;  ///< [s]; 1: the longest.   pre  not empty
   double total(TimeOf which) const noexcept;          ///< [s]
 
  private:
@@ -77,7 +77,7 @@ struct MeshReport {
   std::optional<DeformableErrors> fidelity{};
   std::uint64_t frames = 0;  ///< written or read; 0: not said
   double frame_period = 0;   ///< [s] from one to the next, if frames
-  bool promised = true;      ///< the bounds are: false where they only decide what is sent
+  bool guaranteed = true;      ///< the bounds are: false where they only decide what is sent
   StepTimes encode{}, decode{};
 };
 
@@ -147,7 +147,7 @@ struct StreamSize {
 /// How a user touched what is there.
 struct TouchReport {
   std::string user;
-  double share = 0;                    ///< of the ticks, in contact
+  double contact_fraction = 0;         ///< of the ticks
   std::uint64_t contacts = 0;          ///< begun
   std::uint32_t most_in_a_second = 0;  ///< of them
   double largest_force = 0;            ///< [N] felt
@@ -163,8 +163,8 @@ struct DeformableReport {
   double step = 0;                             ///< [s]
   double h_omega = 0;                          ///< step times the largest angular frequency; 0: not known
   std::uint64_t samples = 0;                   ///< steps whose error was looked at
-  double error_of_motion = 0, error_most = 0;  ///< RMS of a step, and the largest; shares of the RMS motion in a step
-  double energy_gained = 0;                    ///< without cause, over the whole run; share of all the work of forces
+  double error_of_motion = 0, error_most = 0;  ///< RMS of a step, and the largest; fractions of the RMS motion in a step
+  double energy_gained = 0;                    ///< without cause, over the whole run; fraction of all the work of forces
 };
 
 /// What a rigid simulation knows of its own error.
@@ -206,11 +206,11 @@ struct CheckReport {
 };
 
 /// How a client passes over to updates.
-enum class ClientWay : std::uint8_t { direct, eased, interpolated };
+enum class ClientWay : std::uint8_t { direct, smoothed, interpolated };
 
-constexpr ClientWay way_of_client(Interpolation interpolation, bool is_eased) {
+constexpr ClientWay way_of_client(Interpolation interpolation, bool is_smoothed) {
   if (interpolation != Interpolation::none) return ClientWay::interpolated;
-  return is_eased ? ClientWay::eased : ClientWay::direct;
+  return is_smoothed ? ClientWay::smoothed : ClientWay::direct;
 }
 
 struct Report {
@@ -278,8 +278,8 @@ Value load_traffic_value(const LoadRates& traffic, double seconds);
 Value mesh_traffic_value(const MeshReport& mesh, double seconds);
 Value stream_value(const Report& report);  ///< pre  it has a stream
 Value bounds_value(const RigidTriggers& bounds);
-/// in   promised  false: the bounds only decide what is sent
-Value mesh_bounds_value(const DeformableThresholds& bounds, std::uint8_t rings, bool promised);
+/// in   guaranteed  false: the bounds only decide what is sent
+Value mesh_bounds_value(const DeformableThresholds& bounds, std::uint8_t rings, bool guaranteed);
 Value widening_value(const Widening& widened);
 
 /// {"error": ...}, schema error.json

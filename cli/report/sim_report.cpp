@@ -116,7 +116,7 @@ void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, 
   for (std::size_t i = 0; i < scene.users.size(); ++i) {
     const sim::TouchSummary& t = simulation.touched(i);
     report.touches.push_back({.user = scene.users[i].name,
-                              .share = static_cast<double>(t.ticks) / static_cast<double>(report.ticks.count()),
+                              .contact_fraction = static_cast<double>(t.ticks) / static_cast<double>(report.ticks.count()),
                               .contacts = t.contacts,
                               .most_in_a_second = t.most_in_a_second,
                               .largest_force = t.largest_force,
@@ -238,7 +238,7 @@ void NetworkJudge::add(const sim::Simulation& simulation, sim::SessionNetwork& n
     NetworkReport& report = user.report;
     for (std::size_t m = 0; m < user.shapes.size(); ++m)
       if (now.meshes[m].updated) user.shapes[m].add(now.tick, now.meshes[m].displacements, touch_of(now, m));
-    if (simulation.share_rendered(i) < 1) ++report.without_force;
+    if (simulation.rendered_fraction(i) < 1) ++report.without_force;
     const sim::ClientCosts& costs = simulation.client_costs(i);
     const auto add = [](StepTimes& times, const sim::ClientCosts::Cost& cost) { times.add({cost.wall, cost.cpu}); };
     if (!user.shapes.empty()) add(report.shapes, costs.shapes);

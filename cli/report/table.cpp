@@ -11,9 +11,9 @@
 
 namespace tactus::cli {
 
-std::string percent(double share) {
-  if (share == 0 || share == 1) return fmt::format("{:.0f} %", 100 * share);
-  return fmt::format("{:.{}f} %", 100 * share, share < 0.0995 || share > 0.995 ? 2 : 1);
+std::string percent(double fraction) {
+  if (fraction == 0 || fraction == 1) return fmt::format("{:.0f} %", 100 * fraction);
+  return fmt::format("{:.{}f} %", 100 * fraction, fraction < 0.0995 || fraction > 0.995 ? 2 : 1);
 }
 
 std::string significant(double value, int digits) { return value == 0 ? "0" : fmt::format("{:.{}g}", value, digits); }

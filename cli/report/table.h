@@ -20,7 +20,7 @@ inline constexpr std::array<const char*, 3> kLayers{"haptic", "visual", "all"}; 
 
 inline constexpr std::uint64_t kUdpHeader = 28;  // [bytes] IPv4 20, UDP 8
 
-std::string percent(double share);  ///< "4.2 %", "0 %"
+std::string percent(double fraction);  ///< "4.2 %", "0 %"
 std::string significant(double value, int digits = 3);
 std::string duration(double seconds);  ///< "12.00 us", "3.1 ms", "2.50 s"
 

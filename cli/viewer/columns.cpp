@@ -102,7 +102,7 @@ Result<std::string> declaration_of(const Scene& scene) {
 
 namespace {
 
-constexpr double kShare = 0.05;  // of the stream's bounds
+constexpr double kFraction = 0.05;  // of the stream's bounds
 // What the grid of every stream can hold.
 constexpr double kLeastLength = 4e-6, kLeastAngle = 1e-4;  // [m], [rad]
 
@@ -131,13 +131,13 @@ bool has_weber_bound(const RigidTriggers& bounds) {
 GhostBounds ghost_bounds(const Scene& scene) {
   GhostBounds ghost;
   const RigidTriggers rigid = scene.bounds && scene.bounds->rigid ? *scene.bounds->rigid : RigidTriggers{};
-  ghost.rigid.visual_position = std::max(kLeastLength, kShare * rigid.visual_position);
-  ghost.rigid.visual_rotation = std::max(kLeastAngle, kShare * rigid.visual_rotation);
+  ghost.rigid.visual_position = std::max(kLeastLength, kFraction * rigid.visual_position);
+  ghost.rigid.visual_rotation = std::max(kLeastAngle, kFraction * rigid.visual_rotation);
   ghost.rigid.haptic = HapticRule::off;
   double visual = DeformableThresholds{}.visual;
   if (scene.bounds)
     for (const DeformableBounds& mesh : scene.bounds->deformables) visual = std::min(visual, mesh.thresholds.visual);
-  ghost.deformable = {.visual = std::max(kLeastLength, kShare * visual), .weber_fraction = {}};
+  ghost.deformable = {.visual = std::max(kLeastLength, kFraction * visual), .weber_fraction = {}};
   return ghost;
 }
 
@@ -158,7 +158,7 @@ TruthData::TruthData(const TraceInfo& info, const Scene& scene, const GhostBound
       truth_(info),
       users_(info.users.size()),
       meshes_(info.meshes.size()) {
-  if (scene.bounds) promised_ = scene.bounds->rigid;
+  if (scene.bounds) declared_bounds_ = scene.bounds->rigid;
 }
 
 Result<void> TruthData::add(const TraceFrame& frame, Replica& shown) {
@@ -201,9 +201,9 @@ void TruthData::add_errors(const TraceFrame& frame, const std::vector<Pose>& sho
     if (user.contact.kind == ContactKind::none) continue;
     const Vec3 force = contact_force(user.contact, frame.objects[user.contact.object].pose);
     const double off = norm(contact_force(user.contact, shown[user.contact.object]) - force);
-    const double budget = promised_ && has_weber_bound(*promised_) ? force_budget(*promised_, norm(force)) : 0;
-    const double share = budget > 0 ? off / budget : off;
-    if (share > ratio) ratio = share, error = off, bound = budget;
+    const double budget = declared_bounds_ && has_weber_bound(*declared_bounds_) ? force_budget(*declared_bounds_, norm(force)) : 0;
+    const double fraction = budget > 0 ? off / budget : off;
+    if (fraction > ratio) ratio = fraction, error = off, bound = budget;
   }
   position_.add_real(position);
   rotation_.add_real(rotation);
@@ -252,7 +252,7 @@ nlohmann::ordered_json TruthData::take() {
   if (moves) out["errors"] = {{"position", position_.take()}, {"rotation", rotation_.take()}};
   if (moves && !users_.empty()) {
     out["errors"]["force"] = force_error_.take();
-    if (promised_ && has_weber_bound(*promised_)) out["errors"]["force_bound"] = force_bound_.take();
+    if (declared_bounds_ && has_weber_bound(*declared_bounds_)) out["errors"]["force_bound"] = force_bound_.take();
   }
   out["users"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < users_.size(); ++i) {

@@ -174,7 +174,7 @@ class TruthData {
   TraceInfo info_;
   const Scene* scene_;
   GhostBounds bounds_;
-  std::optional<RigidTriggers> promised_;
+  std::optional<RigidTriggers> declared_bounds_;
   PacketLog ghost_;
   FrameTruth truth_;
   Column ticks_{1};

@@ -106,23 +106,23 @@ bool HeardPackets::all_between(std::uint64_t first, std::uint64_t last) const no
 RigidPose bend(const Scene& scene, const RigidState& a, const RigidState& b, std::int64_t tick) noexcept {
   const RigidPredictor predictor(scene);
   const std::int64_t whole = b.tick - a.tick;
-  const std::int64_t share = round_div((tick - a.tick) << 30, whole);
-  const Cubic curve = cubic(share);
+  const std::int64_t fraction = round_div((tick - a.tick) << 30, whole);
+  const Cubic curve = cubic(fraction);
   const bool is_moving = !is_zero(a.velocity) || !is_zero(b.velocity);
   const bool is_turning = !is_zero(a.angular_velocity) || !is_zero(b.angular_velocity);
   const PoseOffset error = offset_between(predictor.pose(a, b.tick), {b.position, b.rotation});
   const PoseOffset change = change_between(scene, predictor.motion(a, b.tick, {}), {b.velocity, b.angular_velocity}, whole);
   return displaced(predictor.pose(a, tick), error, change,
-                   {is_moving ? curve.error : share, is_turning ? curve.error : share, curve.change});
+                   {is_moving ? curve.error : fraction, is_turning ? curve.error : fraction, curve.change});
 }
 
 // ==== replica ====
 
 Result<void> Replica::check(const ReplicaOptions& options, const Scene& scene) noexcept {
-  const bool valid = options.share > 0 && options.share <= 1 && options.shortest >= 0 && options.shortest <= options.longest &&
+  const bool valid = options.fraction > 0 && options.fraction <= 1 && options.shortest >= 0 && options.shortest <= options.longest &&
                      options.longest <= 10;
   const bool smooths = options.interpolation != Interpolation::none && options.interpolation != Interpolation::playout;
-  if (!valid || (smooths && scene.is_eased)) return fail(Errc::invalid_argument, "R-API-4");
+  if (!valid || (smooths && scene.is_smoothed)) return fail(Errc::invalid_argument, "R-API-4");
   return {};
 }
 
@@ -130,7 +130,7 @@ Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<
     : scene_(scene),
       predictor_(scene),
       interpolation_(options.interpolation),
-      share_(static_cast<std::uint32_t>(std::floor(options.share * 65536 + 0.5))),
+      fraction_(static_cast<std::uint32_t>(std::floor(options.fraction * 65536 + 0.5))),
       shortest_(static_cast<std::int64_t>(std::floor(options.shortest * scene.tick_rate + 0.5))),
       longest_(static_cast<std::int64_t>(std::floor(options.longest * scene.tick_rate + 0.5))),
       reach_(std::min<std::int64_t>(round_div(300 * std::int64_t{scene.tick_rate}, 1000), scene.max_extrapolation)),
@@ -144,13 +144,13 @@ Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<
   }
 }
 
-/// t_N in ticks: share of the mean gap, clipped; 0 while no gap is known. spec 60-client 3
+/// t_N in ticks: a fraction of the mean gap, clipped; 0 while no gap is known. spec 60-client 3
 std::int64_t Replica::interval(const Track& track) const noexcept {
   if (track.gap_count == 0) return 0;
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < track.gap_count; ++i) sum += track.gaps[i];
-  const std::int64_t mean_share = round_div(sum * share_, static_cast<std::int64_t>(track.gap_count) << 16);
-  return std::clamp(mean_share, shortest_, longest_);
+  const std::int64_t wanted = round_div(sum * fraction_, static_cast<std::int64_t>(track.gap_count) << 16);
+  return std::clamp(wanted, shortest_, longest_);
 }
 
 void Replica::reset_timelines() noexcept {
@@ -204,12 +204,12 @@ RigidPose Replica::path_from(std::uint32_t object, const Timelines::Update& a, s
   return is_whole ? predictor_.shown(object, a.state, tick) : bend(scene_, a.state, b->state, tick);
 }
 
-/// What was left to go at the tick of an update: from the updates before it, back to one whose own easing was over when the next came.
+/// What was left to go at the tick of an update: from the updates before it, back to one whose own smoothing was over when the next came.
 PoseOffset Replica::past_offset(std::uint32_t object, Timelines::Index update) const noexcept {
   Timelines::Index at = update;
-  for (unsigned back = 0; back < kMostEased; ++back) {
+  for (unsigned back = 0; back < kMostSmoothed; ++back) {
     const Timelines::Index z = timelines_[at].previous;
-    if (z == Timelines::kNone || !is_easing(timelines_[z].state, timelines_[at].state.tick)) break;
+    if (z == Timelines::kNone || !is_smoothing(timelines_[z].state, timelines_[at].state.tick)) break;
     at = z;
   }
   PoseOffset out;
@@ -219,7 +219,7 @@ PoseOffset Replica::past_offset(std::uint32_t object, Timelines::Index update) c
       out = {};
     } else {
       const Timelines::Update& z = timelines_[to.previous];
-      out = kept_offset(eased(path_from(object, z, to.state.tick), z.state, out, to.state.tick), to.state);
+      out = kept_offset(smoothed(path_from(object, z, to.state.tick), z.state, out, to.state.tick), to.state);
     }
     if (at == update) return out;
   }
@@ -231,7 +231,7 @@ RigidPose Replica::past_pose(std::uint32_t object, std::int64_t tick) const noex
   const Timelines::Update& a = timelines_[before];
   tick = std::max(tick, a.state.tick);
   const RigidPose path = path_from(object, a, tick);
-  return is_easing(a.state, tick) ? eased(path, a.state, past_offset(object, before), tick) : path;
+  return is_smoothing(a.state, tick) ? smoothed(path, a.state, past_offset(object, before), tick) : path;
 }
 
 RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {

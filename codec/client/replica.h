@@ -100,11 +100,11 @@ enum class Interpolation : std::uint8_t {
   playout,   ///< the client shows ticks in the past, by a playout delay of its choice, and bends over gaps that losses leave
 };
 
-/// The heuristic for t_N: `share` of the mean of the last 5 inter-arrival times, clipped. An update during a running interpolation
+/// The heuristic for t_N: `fraction` of the mean of the last 5 inter-arrival times, clipped. An update during a running interpolation
 /// ends it: the new state is applied at once.
 struct ReplicaOptions {
   Interpolation interpolation = Interpolation::none;
-  double share = 0.75;      ///< P
+  double fraction = 0.75;      ///< P
   double shortest = 0.005;  ///< [s]
   double longest = 0.100;   ///< [s]
 };
@@ -113,7 +113,7 @@ class DeformableDecoder;
 
 class Replica {
  public:
-  /// R-API-4: not 0 < share <= 1, not 0 <= shortest <= longest <= 10 s, or smoothing of the client's own in an eased scene.
+  /// R-API-4: not 0 < fraction <= 1, not 0 <= shortest <= longest <= 10 s, or smoothing of the client's own in a smoothed scene.
   static Result<void> check(const ReplicaOptions& options, const Scene& scene) noexcept;
   /// pre  check(); scene and decoders outlive the replica.   in  shapes  one per deformable object
   Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes);
@@ -136,8 +136,8 @@ class Replica {
 
   /// Pose of one object as shown at tick `now`. Before the object's newest update, the pose shown when that was applied. With
   /// Interpolation::playout `now` is the tick that is shown, not before any shown so far.
-  /// pre  object < scene.objects.size().   time about 50 ns, 100 ns while interpolating or easing, 0.5 us over a gap; with playout and easing
-  ///      1 us for each update that came within 2^ease ticks of the next, at most 64 of them. No allocation.
+  /// pre  object < scene.objects.size().   time about 50 ns, 100 ns while interpolating or smoothing, 0.5 us over a gap; with playout and smoothing
+  ///      1 us for each update that came within 2^smoothing_exp ticks of the next, at most 64 of them. No allocation.
   RigidPose pose(std::uint32_t object, std::int64_t now) const noexcept;
 
   /// Level of detail of an object as shown at tick `now`, in a scene with interest: its bounds are 2^lod times as wide; kOutOfInterest: it should
@@ -153,7 +153,7 @@ class Replica {
  private:
   static constexpr std::size_t kArrivals = 5;  // M
   struct Track {
-    EasedPath path;                   // target: the newest state
+    SmoothedPath path;                   // target: the newest state
     std::uint64_t number = 0;         // of its packet
     std::int64_t begin = 0, end = 0;  // [begin, end); empty: no interpolation is running
     PoseOffset error;                 // from where the newest state is at `begin` to what was shown there
@@ -162,7 +162,7 @@ class Replica {
     std::array<std::int32_t, kArrivals> gaps{};
     std::uint8_t gap_count = 0, gap_next = 0;
   };
-  static constexpr unsigned kMostEased = 64;  // updates back
+  static constexpr unsigned kMostSmoothed = 64;  // updates back
   void add_to_timelines(const DecodedPacket& packet, const RigidStates& states) noexcept;
   void reset_timelines() noexcept;
   RigidPose path_from(std::uint32_t object, const Timelines::Update& a, std::int64_t tick) const noexcept;
@@ -174,7 +174,7 @@ class Replica {
   const Scene& scene_;
   RigidPredictor predictor_;
   Interpolation interpolation_ = Interpolation::none;
-  std::uint32_t share_ = 0;  // x 2^-16
+  std::uint32_t fraction_ = 0;  // x 2^-16
   std::int64_t shortest_ = 0, longest_ = 0;
   std::int64_t reach_ = 0;     // [ticks] longest gap to bend over
   std::vector<Track> tracks_;  // empty with playout

@@ -40,7 +40,7 @@ double StiffnessReduction::filtered(double wanted) noexcept {
 }
 
 double StiffnessReduction::reduced(const DeformableTouch& touch, std::uint32_t round_trip) noexcept {
-  const double k = touch.coupling, follows = share_followed(touch.object_stiffness, k);
+  const double k = touch.coupling, follows = followed_fraction(touch.object_stiffness, k);
   const double stretch = -dot(touch.stretch, touch.normal), inwards = -dot(way(round_trip), touch.normal);
   double wanted = k;
   if (inwards > 0) wanted = inwards < stretch ? k * (1 - follows * inwards / stretch) : k * (1 - follows);

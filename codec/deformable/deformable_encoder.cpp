@@ -51,7 +51,7 @@ Vec3i quantise(const Vec3i& truth, const Vec3i& predicted, std::uint32_t farthes
 }
 
 /// Every packet costs a header. Where shapes come more often than packets, spare accuracy delays the next one.
-double default_share(const Scene& scene, const DeformableObject& object) noexcept {
+double default_fraction(const Scene& scene, const DeformableObject& object) noexcept {
   constexpr double kRareShapes = 0.01;  // [s]
   const double period = object.frame_period / 256.0 / scene.tick_rate;
   return period < kRareShapes ? 0.7 : 1;
@@ -62,8 +62,8 @@ double default_share(const Scene& scene, const DeformableObject& object) noexcep
 MainEncoder::MainEncoder(const Scene& scene, const DeformableObject& object, const DeformableOptions& options)
     : object_(object),
       thresholds_(options.thresholds),
-      visual_share_(options.visual_share.value_or(default_share(scene, object))),
-      haptic_share_(options.haptic_share.value_or(default_share(scene, object))),
+      visual_fraction_(options.visual_fraction.value_or(default_fraction(scene, object))),
+      haptic_fraction_(options.haptic_fraction.value_or(default_fraction(scene, object))),
       unit_(std::ldexp(1.0, -scene.grid.position)),
       baseline_span_(scene.baseline_span),
       hierarchy_(scene.hierarchy(object)),
@@ -91,13 +91,13 @@ MainHead MainEncoder::head_for(const EncodeRequest<MainState>& request) noexcept
   head.same_frame = request.layer == Layer::visual && !head.key && request.base.tick == request.tick;
   const double visual = widening_ * thresholds_.visual;
   trigger_[0] = units(visual);
-  limit_[0] = head.visual = units(visual_share_ * visual);
+  limit_[0] = head.visual = units(visual_fraction_ * visual);
   head.touched = touch_ != nullptr && thresholds_.weber_fraction;
   if (!head.touched) return head;
   head.triangle = touch_->triangle;
   const double haptic = widening_ * haptic_threshold(thresholds_, *touch_);
   trigger_[1] = std::min(trigger_[0], units(haptic));
-  limit_[1] = std::min(limit_[0], units(haptic_share_ * haptic));
+  limit_[1] = std::min(limit_[0], units(haptic_fraction_ * haptic));
   while (head.haptic < kMaxHapticIndex && haptic_bound(head.haptic + 1) <= limit_[1]) ++head.haptic;
   return head;
 }
@@ -198,8 +198,8 @@ std::size_t MainEncoder::write(MainHead head, const MainState& base, std::span<s
 Payload MainEncoder::write_vertices(MainHead& head, const MainState& base, std::span<std::uint8_t> out) noexcept {
   coder_.use_weights(head.weight_set);
   const std::uint32_t updates = choose_residuals();
-  const std::uint64_t share = (std::uint64_t{updates} << 8) / coded_.size();
-  head.density = head.layer == Layer::haptic ? base.density : share < 3 ? 0 : share < 15 ? 1 : share < 64 ? 2 : 3;
+  const std::uint64_t fraction = (std::uint64_t{updates} << 8) / coded_.size();
+  head.density = head.layer == Layer::haptic ? base.density : fraction < 3 ? 0 : fraction < 15 ? 1 : fraction < 64 ? 2 : 3;
   return Payload{.size = write(head, base, out), .updates = updates};
 }
 
@@ -252,7 +252,7 @@ Result<Payload> MainEncoder::encode(const EncodeRequest<MainState>& request, std
 
 namespace {
 
-constexpr double kSomeLoss = 0.003;  // share of packets
+constexpr double kSomeLoss = 0.003;  // fraction of packets
 
 template <class Codec>
 class Of final : public DeformableEncoder {
@@ -336,7 +336,7 @@ Result<void> DeformableEncoder::check(const DeformableOptions& options) noexcept
   const auto in = [](double v, double low, double high) { return v >= low && v <= high; };  // false for NaN
   const DeformableThresholds& t = options.thresholds;
   if (in(t.visual, 0, 1e6) && in(t.weber_fraction.value_or(0), 0, 1) && in(t.depth_floor, 0, 1e6) &&
-      in(options.visual_share.value_or(1), 1e-3, 1) && in(options.haptic_share.value_or(1), 1e-3, 1))
+      in(options.visual_fraction.value_or(1), 1e-3, 1) && in(options.haptic_fraction.value_or(1), 1e-3, 1))
     return {};
   return fail(Errc::invalid_argument, "R-API-4");
 }

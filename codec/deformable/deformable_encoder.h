@@ -72,7 +72,7 @@ class MainEncoder {
 
   const DeformableObject& object_;
   const DeformableThresholds thresholds_;
-  const double visual_share_, haptic_share_;
+  const double visual_fraction_, haptic_fraction_;
   double widening_ = 1;
   double unit_;  // [m] of the grid
   std::uint8_t baseline_span_;
@@ -92,7 +92,7 @@ class MainEncoder {
   std::vector<CodedVertex> coded_;
   std::unique_ptr<FollowedShape> driven_;  // null: no device is known
   std::uint32_t trigger_[2]{};             // outside and inside the area of interest: errors that call for a packet, grid units
-  std::uint32_t limit_[2]{};               // errors that a packet corrects: shares of the same
+  std::uint32_t limit_[2]{};               // errors that a packet corrects: fractions of the same
 };
 
 // ==== deformable encoder ====

@@ -37,10 +37,10 @@ struct DeformableTruth {
 
 struct DeformableOptions {
   DeformableThresholds thresholds{};
-  /// main: an error of v calls for a packet, which then corrects all errors above this share of v. Less error and fewer packets, but
-  /// more bits. 0.001 <= share <= 1; not set: 1, but 0.7 for shapes that follow each other within 10 ms
-  std::optional<double> visual_share{};
-  std::optional<double> haptic_share{};  ///< main: the same of h
+  /// main: an error of v calls for a packet, which then corrects all errors above this fraction of v. Less error and fewer packets, but
+  /// more bits. 0.001 <= fraction <= 1; not set: 1, but 0.7 for shapes that follow each other within 10 ms
+  std::optional<double> visual_fraction{};
+  std::optional<double> haptic_fraction{};  ///< main: the same of h
   bool layered = false;  ///< thesis: separate packets for the haptic and the visual layer. main: the scene declares it
 };
 

@@ -43,7 +43,7 @@ void solve(const std::vector<double>& factor, std::vector<double>& x) {
 
 ModeProjection::ModeProjection(const ModeBasis& basis) : basis_(basis) {
   if (!basis.entries.empty()) invert_entries();
-  if (basis.shares.size() > 0) factorise_shares();
+  if (basis.cluster_entries.size() > 0) factorise_clusters();
 }
 
 void ModeProjection::invert_entries() {
@@ -66,12 +66,12 @@ void ModeProjection::invert_entries() {
   }
 }
 
-void ModeProjection::factorise_shares() {
+void ModeProjection::factorise_clusters() {
   const std::size_t functions = basis_.steps.size() / 3;
   factor_.assign(functions * functions, 0.0);
-  for (std::size_t v = 0; v < basis_.shares.size(); ++v)
-    for (const ClusterShare& a : basis_.shares[v])
-      for (const ClusterShare& b : basis_.shares[v])
+  for (std::size_t v = 0; v < basis_.cluster_entries.size(); ++v)
+    for (const ClusterEntry& a : basis_.cluster_entries[v])
+      for (const ClusterEntry& b : basis_.cluster_entries[v])
         for (std::size_t i = 0; i < 4; ++i)
           for (std::size_t j = 0; j < 4; ++j)
             factor_[(std::size_t{4} * a.cluster + i) * functions + std::size_t{4} * b.cluster + j] +=
@@ -80,19 +80,19 @@ void ModeProjection::factorise_shares() {
   for (std::vector<double>& sum : sum_) sum.resize(functions);
 }
 
-void ModeProjection::project_on_shares(std::span<const Vec3i> error, std::span<float> coefficients) noexcept {
+void ModeProjection::project_on_clusters(std::span<const Vec3i> error, std::span<float> coefficients) noexcept {
   for (std::vector<double>& sum : sum_) std::ranges::fill(sum, 0.0);
   for (std::size_t v = 0; v < error.size(); ++v)
-    for (const ClusterShare& share : basis_.shares[v])
+    for (const ClusterEntry& entry : basis_.cluster_entries[v])
       for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t axis = 0; axis < 3; ++axis)
-          sum_[axis][std::size_t{4} * share.cluster + i] += share.values[i] / 2048.0 * error[v][axis];
+          sum_[axis][std::size_t{4} * entry.cluster + i] += entry.values[i] / 2048.0 * error[v][axis];
   for (std::vector<double>& sum : sum_) solve(factor_, sum);
   for (std::size_t k = 0; k < coefficients.size(); ++k) coefficients[k] = static_cast<float>(sum_[k % 3][k / 3]);
 }
 
 void ModeProjection::project(std::span<const Vec3i> error, std::span<float> coefficients) noexcept {
-  if (!factor_.empty()) return project_on_shares(error, coefficients);
+  if (!factor_.empty()) return project_on_clusters(error, coefficients);
   for (std::size_t v = 0; v < error.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis) error_[3 * v + axis] = static_cast<float>(error[v][axis]);
   for (std::size_t k = 0; k < coefficients.size(); ++k) {

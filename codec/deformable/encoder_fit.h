@@ -30,8 +30,8 @@ class ModeProjection {
 
  private:
   void invert_entries();
-  void factorise_shares();
-  void project_on_shares(std::span<const Vec3i> error, std::span<float> coefficients) noexcept;
+  void factorise_clusters();
+  void project_on_clusters(std::span<const Vec3i> error, std::span<float> coefficients) noexcept;
 
   const ModeBasis& basis_;
   std::vector<double> gram_;

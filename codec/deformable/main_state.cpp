@@ -134,18 +134,18 @@ ShapePredictor::ShapePredictor(const DeformableObject& object)
     : object_(object),
       increments_(object.basis.steps.size()),
       extrapolated_(increments_.size()),
-      rounded_(object.basis.shares.size() == 0 ? 0 : increments_.size()),
+      rounded_(object.basis.cluster_entries.size() == 0 ? 0 : increments_.size()),
       sum_(object.basis.entries.empty() ? 0 : 3 * object.rest.size()) {}
 
 /// The same where most entries are 0.
-void ShapePredictor::combine_shares(std::span<const std::int32_t> coefficients, unsigned shift, std::span<Vec3i> out) noexcept {
+void ShapePredictor::combine_clusters(std::span<const std::int32_t> coefficients, unsigned shift, std::span<Vec3i> out) noexcept {
   for (std::size_t k = 0; k < coefficients.size(); ++k)
     rounded_[k] = static_cast<std::int32_t>(round_shift(coefficients[k], shift));
   for (std::size_t v = 0; v < out.size(); ++v) {
     std::array<std::int64_t, 3> sum{};
-    for (const ClusterShare& share : object_.basis.shares[v]) {
-      const std::int32_t* g = rounded_.data() + ModeBasis::kClusterModes * share.cluster;
-      for (const std::int16_t value : share.values)
+    for (const ClusterEntry& entry : object_.basis.cluster_entries[v]) {
+      const std::int32_t* g = rounded_.data() + ModeBasis::kClusterModes * entry.cluster;
+      for (const std::int16_t value : entry.values)
         for (std::int64_t& s : sum) s += std::int64_t{value} * *g++;
     }
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -182,7 +182,7 @@ void ShapePredictor::combine(std::span<const std::int32_t> coefficients, std::sp
   if (largest == 0) return;
   const auto width = static_cast<unsigned>(std::bit_width(largest));
   const unsigned shift = width > 14 ? width - 14 : 0;
-  if (object_.basis.shares.size() > 0) return combine_shares(coefficients, shift, out);
+  if (object_.basis.cluster_entries.size() > 0) return combine_clusters(coefficients, shift, out);
   sum_modes(coefficients, shift);
   for (std::size_t v = 0; v < out.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis)

@@ -122,7 +122,7 @@ class ShapePredictor {
  private:
   void combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
   void sum_modes(std::span<const std::int32_t> coefficients, unsigned shift) noexcept;
-  void combine_shares(std::span<const std::int32_t> coefficients, unsigned shift, std::span<Vec3i> out) noexcept;
+  void combine_clusters(std::span<const std::int32_t> coefficients, unsigned shift, std::span<Vec3i> out) noexcept;
 
   const DeformableObject& object_;
   std::vector<std::int32_t> increments_;    // by mode, of the current packet, since motion_tick

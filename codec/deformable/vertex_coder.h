@@ -62,11 +62,11 @@ class VertexCoder {
     const std::uint32_t frames = std::min(frame_steps(object, tick - base.motion_tick), ModeMotion::kMaxSteps);
     std::int64_t left = 1 << 16;
     for (std::uint32_t n = 0; n < frames; ++n) left = (left * ((1 << 16) - object.fade)) >> 16;
-    const double share = static_cast<double>(left) / 65536;  // its products with 28 bits are exact
+    const double fraction = static_cast<double>(left) / 65536;  // its products with 28 bits are exact
     for (std::size_t v = 0; v < expected.size(); ++v) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::int32_t before = base.off_basis[v][axis];
-        const auto after = static_cast<std::int32_t>(before * share);
+        const auto after = static_cast<std::int32_t>(before * fraction);
         next.off_basis[v][axis] = after;
         expected[v][axis] = std::clamp(expected[v][axis] - before + after, -kMost, kMost);
       }

@@ -11,7 +11,7 @@ using Method = ElasticBody::Method;
 
 constexpr int kRounds = 2, kIterations = 4;
 constexpr double kStill = 0x1p-30;                       // [m/s]
-constexpr double kTrapezoid = 2 - 0x1.6a09e667f3bcdp+0;  // 2 - sqrt(2): share of a step of TR-BDF2 that its first stage reaches
+constexpr double kTrapezoid = 2 - 0x1.6a09e667f3bcdp+0;  // 2 - sqrt(2): fraction of a step of TR-BDF2 that its first stage reaches
 
 /// [s] What a stage of an implicit step reaches, or a sub-step.
 double reach_of(const ElasticBody& body, double step) noexcept {
@@ -40,8 +40,8 @@ ElasticSolver::ElasticSolver(const Scene& scene, const DeformableObject& object)
       rest_(elastic_rest(object, scene.grid.position)),
       elimination_(elimination(body_, rest_.size())),
       elements_(body_, rest_),
-      mass_share_((1 / reach_ + body_.mass_damping) / reach_),
-      stiffness_share_(1 + body_.stiffness_damping / reach_),
+      mass_factor_((1 / reach_ + body_.mass_damping) / reach_),
+      stiffness_factor_(1 + body_.stiffness_damping / reach_),
       u_(3 * rest_.size()),
       ahead_(u_.size()),
       force_(u_.size()),
@@ -53,7 +53,7 @@ ElasticSolver::ElasticSolver(const Scene& scene, const DeformableObject& object)
       along_(residual_.size()),
       rotations_(rest_.size()) {
   if (body_.method != Method::velocity_verlet) {
-    matrix_.emplace(body_, elimination_, elements_, mass_share_, stiffness_share_);
+    matrix_.emplace(body_, elimination_, elements_, mass_factor_, stiffness_factor_);
     return;
   }
   decay_ = decay(body_.mass_damping * reach_ / 2);
@@ -104,7 +104,7 @@ double ElasticSolver::product() noexcept {
   double sum = 0;
   for (std::size_t i = 0; i < way_.size(); ++i) {
     const std::uint32_t v = elimination_.order[i / 3];
-    along_[i] = mass_share_ * elements_.mass()[v] * way_[i] + stiffness_share_ * force_[3 * std::size_t{v} + i % 3];
+    along_[i] = mass_factor_ * elements_.mass()[v] * way_[i] + stiffness_factor_ * force_[3 * std::size_t{v} + i % 3];
     sum += way_[i] * along_[i];
   }
   return sum;

@@ -65,7 +65,7 @@ class ElasticSolver {
   std::vector<Vec3> rest_;
   Elimination elimination_;
   ElasticElements elements_;
-  double mass_share_, stiffness_share_;
+  double mass_factor_, stiffness_factor_;
   std::optional<ElasticMatrix> matrix_;             // none: velocity Verlet
   std::vector<double> u_, ahead_, force_;           // 3 per vertex: end of the stage; where forces act; forces
   std::vector<double> start_, pace_;                // 3 per vertex: of a stage, a and b

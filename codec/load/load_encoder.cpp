@@ -9,11 +9,11 @@
 namespace tactus {
 namespace {
 
-constexpr double kBaselineShare = 0.5;  // of a bound that the baseline of an object may be off before a packet names it
-constexpr double kRoundingShare = 0.25;
+constexpr double kBaselineFraction = 0.5;  // of a bound that the baseline of an object may be off before a packet names it
+constexpr double kRoundingFraction = 0.25;
 constexpr unsigned kCoarsest = 7;
 constexpr double kRounding = 0.87;                  // of the truth to the grid: half the diagonal of a cell
-constexpr double kSomeLoss = 0.003, kSoon = 0.020;  // share of packets; [s] after the last sending where so many are lost
+constexpr double kSomeLoss = 0.003, kSoon = 0.020;  // fraction of packets; [s] after the last sending where so many are lost
 
 double square(double v) noexcept { return v * v; }
 
@@ -83,18 +83,18 @@ void LoadEncoder::set_link(const LinkState& link) noexcept {
   answer_ = link.answer > 0 && link.loss >= kSomeLoss ? std::min(link.answer, soon) : link.answer;
 }
 
-/// At `share` of the permitted error, for the unrounded truth.
-bool LoadEncoder::within(const Vec3i& held, const Vec3i& truth, double share) const noexcept {
+/// At `fraction` of the permitted error, for the unrounded truth.
+bool LoadEncoder::within(const Vec3i& held, const Vec3i& truth, double fraction) const noexcept {
   double distance = 0;
   for (std::size_t a = 0; a < 3; ++a) distance += square(static_cast<double>(truth[a]) - held[a]);
   const double force = std::max(std::sqrt(length_squared(truth)) - kRounding, floor_);
-  return distance <= square(std::max(0.0, share * widening_ * thresholds_.weber_fraction * force - kRounding));
+  return distance <= square(std::max(0.0, fraction * widening_ * thresholds_.weber_fraction * force - kRounding));
 }
 
-/// A vector of the object is off by more than `share` of its bound, and a packet could do better.
-bool LoadEncoder::is_out(std::size_t object, const LoadState& state, double share) const noexcept {
+/// A vector of the object is off by more than `fraction` of its bound, and a packet could do better.
+bool LoadEncoder::is_out(std::size_t object, const LoadState& state, double fraction) const noexcept {
   for (std::size_t v = object * steps_.size(); v < (object + 1) * steps_.size(); ++v)
-    if (!within(state.vectors[v], truth_[v], share) && state.vectors[v] != truth_[v]) return true;
+    if (!within(state.vectors[v], truth_[v], fraction) && state.vectors[v] != truth_[v]) return true;
   return false;
 }
 
@@ -106,7 +106,7 @@ void LoadEncoder::collect(const EncodeRequest<LoadState>& request) noexcept {
   for (std::size_t i = 0; i < objects && !fires; ++i) fires = is_out(i, request.shown, 1);
   if (!fires) return;
   for (std::size_t i = 0; i < objects; ++i)
-    if (is_out(i, request.base, kBaselineShare) || is_out(i, request.shown, 1)) pending_.push_back(i);
+    if (is_out(i, request.base, kBaselineFraction) || is_out(i, request.shown, 1)) pending_.push_back(i);
 }
 
 /// Steps of an object, at the coarsest level that keeps its vectors.
@@ -115,7 +115,7 @@ std::uint8_t LoadEncoder::quantise(std::size_t object, const LoadState& base) no
   const auto keeps = [&](unsigned level) {
     for (std::size_t v = first; v < first + steps_.size(); ++v) {
       const Vec3i rounded = after_step(base.vectors[v], steps_to(base.vectors[v], truth_[v], level), level);
-      if (!within(base.vectors[v], truth_[v], kBaselineShare) && !within(rounded, truth_[v], kRoundingShare)) return false;
+      if (!within(base.vectors[v], truth_[v], kBaselineFraction) && !within(rounded, truth_[v], kRoundingFraction)) return false;
     }
     return true;
   };
@@ -124,7 +124,7 @@ std::uint8_t LoadEncoder::quantise(std::size_t object, const LoadState& base) no
   for (std::size_t v = 0; v < steps_.size(); ++v) {
     const Vec3i& from = base.vectors[first + v];
     const Vec3i& truth = truth_[first + v];
-    steps_[v].changed = !within(from, truth, kBaselineShare) && from != truth;
+    steps_[v].changed = !within(from, truth, kBaselineFraction) && from != truth;
     steps_[v].steps = steps_[v].changed ? steps_to(from, truth, level) : Vec3i{};
     wanted_[first + v] = steps_[v].changed ? after_step(from, steps_[v].steps, level) : from;
   }

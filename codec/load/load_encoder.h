@@ -56,8 +56,8 @@ class LoadEncoder {
   void set_widening(double factor) noexcept { widening_ = factor; }
 
  private:
-  bool within(const Vec3i& held, const Vec3i& truth, double share) const noexcept;
-  bool is_out(std::size_t object, const LoadState& state, double share) const noexcept;
+  bool within(const Vec3i& held, const Vec3i& truth, double fraction) const noexcept;
+  bool is_out(std::size_t object, const LoadState& state, double fraction) const noexcept;
   void collect(const EncodeRequest<LoadState>& request) noexcept;
   std::uint8_t quantise(std::size_t object, const LoadState& base) noexcept;
 

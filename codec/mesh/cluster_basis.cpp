@@ -15,43 +15,43 @@ static_assert(FLT_EVAL_METHOD == 0, "both ends compute the same bits only if no 
 namespace tactus {
 namespace {
 
-constexpr std::size_t kMostShares = 4;  // of a vertex
+constexpr std::size_t kMostWeights = 4;  // of a vertex
 constexpr std::uint32_t kWhole = 1u << 16;
 constexpr double kCoarseness = 3;  // of the quantiser steps
 constexpr double kFlat = 0x1p-30;  // what is left of a direction that a flat cluster does not have
 
-struct Share {
+struct ClusterWeight {
   std::uint8_t cluster = 0;
   std::uint32_t weight = 0;  // x 2^-16; 0: none
 };
-using Shares = std::array<Share, kMostShares>;
+using ClusterWeights = std::array<ClusterWeight, kMostWeights>;
 
 class Blender {
  public:
   explicit Blender(const DeformableObject& object) : near_(neighbours(object)) {
-    for (const std::uint8_t c : object.cluster_basis.clusters) shares_.push_back({Share{c, kWhole}});
+    for (const std::uint8_t c : object.cluster_basis.clusters) weights_.push_back({ClusterWeight{c, kWhole}});
     for (unsigned round = 0; round < object.cluster_basis.blend; ++round) blend();
   }
-  const std::vector<Shares>& shares() const noexcept { return shares_; }
+  const std::vector<ClusterWeights>& weights() const noexcept { return weights_; }
 
  private:
-  void add(const Shares& shares, std::uint64_t times) noexcept {
-    for (const Share& share : shares) {
-      if (share.weight == 0) continue;
-      if (sum_[share.cluster] == 0) touched_[count_++] = share.cluster;
-      sum_[share.cluster] += times * share.weight;
+  void add(const ClusterWeights& weights, std::uint64_t times) noexcept {
+    for (const ClusterWeight& of : weights) {
+      if (of.weight == 0) continue;
+      if (sum_[of.cluster] == 0) touched_[count_++] = of.cluster;
+      sum_[of.cluster] += times * of.weight;
     }
   }
-  Shares take() noexcept {
+  ClusterWeights take() noexcept {
     const auto end = touched_.begin() + static_cast<std::ptrdiff_t>(count_);
-    const auto kept = touched_.begin() + static_cast<std::ptrdiff_t>(std::min(count_, kMostShares));
+    const auto kept = touched_.begin() + static_cast<std::ptrdiff_t>(std::min(count_, kMostWeights));
     std::partial_sort(touched_.begin(), kept, end,
                       [this](std::uint8_t a, std::uint8_t b) { return sum_[a] != sum_[b] ? sum_[a] > sum_[b] : a < b; });
     std::uint64_t total = 0;
     for (auto c = touched_.begin(); c != kept; ++c) total += sum_[*c];
-    Shares out{};
+    ClusterWeights out{};
     std::uint32_t missing = kWhole;
-    for (std::size_t i = 0; i < std::min(count_, kMostShares); ++i) {
+    for (std::size_t i = 0; i < std::min(count_, kMostWeights); ++i) {
       out[i] = {touched_[i], static_cast<std::uint32_t>((sum_[touched_[i]] << 16) / total)};
       missing -= out[i].weight;
     }
@@ -61,18 +61,18 @@ class Blender {
     return out;
   }
   void blend() {
-    before_ = shares_;
-    for (std::size_t v = 0; v < shares_.size(); ++v) {
+    before_ = weights_;
+    for (std::size_t v = 0; v < weights_.size(); ++v) {
       const auto near = near_[v];
       if (near.empty()) continue;
       add(before_[v], near.size());
       for (const std::uint32_t w : near) add(before_[w], 1);
-      shares_[v] = take();
+      weights_[v] = take();
     }
   }
 
   Neighbours near_;
-  std::vector<Shares> shares_, before_;
+  std::vector<ClusterWeights> weights_, before_;
   std::array<std::uint64_t, ClusterBasis::kMaxClusters> sum_{};
   std::array<std::uint8_t, ClusterBasis::kMaxClusters> touched_{};
   std::size_t count_ = 0;
@@ -80,7 +80,7 @@ class Blender {
 
 struct Member {
   std::uint32_t vertex = 0;
-  double weight = 0;  // its share
+  double weight = 0;  // of the cluster
 };
 
 /// The functions 1, x, y, z on a cluster, each made orthogonal to those before it.
@@ -111,8 +111,8 @@ class Functions {
   void remove(std::span<const double> f, std::span<double> x) const noexcept {
     const double square = product(f, f);
     if (!(square > 0)) return;
-    const double share = product(f, x) / square;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = x[i] - share * f[i];
+    const double factor = product(f, x) / square;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = x[i] - factor * f[i];
   }
 
   std::span<const Member> members_;
@@ -144,19 +144,19 @@ ModeBasis cluster_basis(const DeformableObject& object) {
   const std::size_t count = object.cluster_basis.count;
   const Blender blender(object);
   ModeBasis out;
-  for (const Shares& shares : blender.shares()) {
-    for (const Share& share : shares)
-      if (share.weight > 0) out.shares.items.push_back({share.cluster, {}});
-    out.shares.close();
+  for (const ClusterWeights& weights : blender.weights()) {
+    for (const ClusterWeight& of : weights)
+      if (of.weight > 0) out.cluster_entries.items.push_back({of.cluster, {}});
+    out.cluster_entries.close();
   }
   std::vector<std::vector<Member>> members(count);
-  std::vector<std::vector<std::uint32_t>> places(count);  // in out.shares.items
+  std::vector<std::vector<std::uint32_t>> places(count);  // in out.cluster_entries.items
   std::uint32_t place = 0;
-  for (std::uint32_t v = 0; v < blender.shares().size(); ++v) {
-    for (const Share& share : blender.shares()[v]) {
-      if (share.weight == 0) continue;
-      members[share.cluster].push_back({v, static_cast<double>(share.weight)});
-      places[share.cluster].push_back(place++);
+  for (std::uint32_t v = 0; v < blender.weights().size(); ++v) {
+    for (const ClusterWeight& of : blender.weights()[v]) {
+      if (of.weight == 0) continue;
+      members[of.cluster].push_back({v, static_cast<double>(of.weight)});
+      places[of.cluster].push_back(place++);
     }
   }
   for (std::size_t c = 0; c < count; ++c) {
@@ -164,7 +164,7 @@ ModeBasis cluster_basis(const DeformableObject& object) {
     for (std::size_t i = 0; i < 4; ++i) {
       const double largest = largest_of(functions[i]);
       for (std::size_t m = 0; m < members[c].size(); ++m)
-        out.shares.items[places[c][m]].values[i] =
+        out.cluster_entries.items[places[c][m]].values[i] =
             static_cast<std::int16_t>(std::floor(functions[i][m] / largest * ModeBasis::kMaxEntry + 0.5));
       out.steps.insert(out.steps.end(), 3, step_of(functions[i], largest));
     }

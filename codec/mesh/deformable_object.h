@@ -62,11 +62,11 @@ enum class DeformableProfile : std::uint8_t { thesis = 0, main = 1 };
 /// Which vertices a packet codes: those in the area of interest, the rest, or all.
 enum class Layer : std::uint8_t { haptic = 0, visual = 1, all = 2 };
 
-/// Where a cluster has a share of a vertex: the values there of its four functions, which it has for each axis.
-struct ClusterShare {
+/// Where a vertex has a weight of a cluster: the values there of the cluster's four functions, which it has for each axis.
+struct ClusterEntry {
   std::uint8_t cluster = 0;
   std::array<std::int16_t, 4> values{};  ///< x 2^-11: entries of the modes 12 * cluster + 3 * i + axis
-  friend bool operator==(const ClusterShare&, const ClusterShare&) = default;
+  friend bool operator==(const ClusterEntry&, const ClusterEntry&) = default;
 };
 
 /// Basis vectors of displacements, known to both ends (vibration modes, principal components, maps of clusters).
@@ -76,7 +76,7 @@ struct ModeBasis {
   static constexpr std::int32_t kMaxEntry = 2047;  ///< so that a sum of 64 products with 15-bit factors fits 32 bits
 
   std::vector<std::int16_t> entries;   ///< modes x vertices x 3, x 2^-11, |entry| <= kMaxEntry; empty: no basis
-  ListOfLists<ClusterShare> shares{};  ///< by vertex, in place of `entries`, which are mostly 0
+  ListOfLists<ClusterEntry> cluster_entries{};  ///< by vertex, in place of `entries`, which are mostly 0
   std::vector<std::uint16_t> steps;    ///< one per mode: quantiser step of its coefficient, x 2^-12 of the visual bound; >= 1
   friend bool operator==(const ModeBasis&, const ModeBasis&) = default;
 };
@@ -123,7 +123,7 @@ struct DeformableObject {
   bool models_kept = false;          ///< thesis: entropy models are part of the state and not restarted in every packet
   std::uint32_t frame_period = 256;  ///< main: ticks between frames, x 2^-8; with a basis also the step of motion prediction
   bool layered = false;              ///< main: each packet belongs to the haptic or the visual layer
-  std::uint16_t fade = 0;            ///< main: share of the corrections outside the basis that fades per frame, x 2^-16
+  std::uint16_t fade = 0;            ///< main: fraction of the corrections outside the basis that fades per frame, x 2^-16
   std::uint8_t weight_sets = 1;      ///< main: bit i: packets may name set i of kWeightSets; at least one
   std::vector<std::array<std::int32_t, 3>> rest;  ///< vertices, x 2^-position_exp m
   std::vector<Triangle> triangles;

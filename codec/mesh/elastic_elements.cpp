@@ -161,8 +161,8 @@ void make_proper(const Rotation& M, Rotation& R) noexcept {
     for (std::size_t b = 0; b < 3; ++b) P[3 * a + b] = R[a] * M[b] + R[3 + a] * M[3 + b] + R[6 + a] * M[6 + b];
   Rotation A = cofactors([&](std::size_t i) { return P[i]; });
   for (int i = 0; i < kSquarings; ++i) {
-    const double share = 1 / (A[0] + A[4] + A[8]);
-    for (double& x : A) x *= share;
+    const double scale = 1 / (A[0] + A[4] + A[8]);
+    for (double& x : A) x *= scale;
     Rotation B;
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b) B[3 * a + b] = A[3 * a] * A[b] + A[3 * a + 1] * A[3 + b] + A[3 * a + 2] * A[6 + b];
@@ -380,7 +380,7 @@ bool is_stable(const ElasticBody& body, std::span<const Vec3> rest, double step)
 // ==== elastic matrix ====
 
 ElasticMatrix::ElasticMatrix(const ElasticBody& body, const Elimination& elimination, const ElasticElements& elements,
-                             double mass_share, double stiffness_share) {
+                             double mass_factor, double stiffness_factor) {
   std::size_t numbers = 0;
   for (std::size_t i = 0; i < 3 * elimination.order.size(); ++i) {
     first_.push_back(3 * std::size_t{elimination.first[i / 3]});
@@ -389,13 +389,13 @@ ElasticMatrix::ElasticMatrix(const ElasticBody& body, const Elimination& elimina
   }
   lower_.resize(numbers);
   diagonal_.resize(first_.size());
-  add(body, elimination, elements, stiffness_share);
-  for (std::size_t i = 0; i < diagonal_.size(); ++i) diagonal_[i] += mass_share * elements.mass()[elimination.order[i / 3]];
+  add(body, elimination, elements, stiffness_factor);
+  for (std::size_t i = 0; i < diagonal_.size(); ++i) diagonal_[i] += mass_factor * elements.mass()[elimination.order[i / 3]];
   factor();
 }
 
 void ElasticMatrix::add(const ElasticBody& body, const Elimination& elimination, const ElasticElements& elements,
-                        double share) noexcept {
+                        double factor) noexcept {
   for (std::size_t e = 0; e < body.tets.size(); ++e) {
     for (std::size_t r = 0; r < 4; ++r) {
       for (std::size_t q = 0; q < 4; ++q) {
@@ -406,7 +406,7 @@ void ElasticMatrix::add(const ElasticBody& body, const Elimination& elimination,
           const std::size_t at = 3 * std::size_t{i} + a;
           for (std::size_t c = 0; c < 3 && 3 * std::size_t{j} + c <= at; ++c) {
             const std::size_t column = 3 * std::size_t{j} + c;
-            (column == at ? diagonal_[at] : row(at)[column - first_[at]]) += share * k[3 * a + c];
+            (column == at ? diagonal_[at] : row(at)[column - first_[at]]) += factor * k[3 * a + c];
           }
         }
       }

@@ -94,9 +94,9 @@ bool is_stable(const ElasticBody& body, std::span<const Vec3> rest, double step)
 
 class ElasticMatrix {
  public:
-  /// mass_share M + stiffness_share K.   time 10 ms for 700 vertices; allocates
-  ElasticMatrix(const ElasticBody& body, const Elimination& elimination, const ElasticElements& elements, double mass_share,
-                double stiffness_share);
+  /// mass_factor M + stiffness_factor K.   time 10 ms for 700 vertices; allocates
+  ElasticMatrix(const ElasticBody& body, const Elimination& elimination, const ElasticElements& elements, double mass_factor,
+                double stiffness_factor);
 
   /// Replace b by A^-1 b, both 3 per place of the elimination.   time 0.5 ns per number in the envelope
   void solve(std::span<double> b) const noexcept;
@@ -104,7 +104,7 @@ class ElasticMatrix {
  private:
   double* row(std::size_t i) noexcept { return lower_.data() + start_[i]; }
   const double* row(std::size_t i) const noexcept { return lower_.data() + start_[i]; }
-  void add(const ElasticBody& body, const Elimination& elimination, const ElasticElements& elements, double share) noexcept;
+  void add(const ElasticBody& body, const Elimination& elimination, const ElasticElements& elements, double factor) noexcept;
   void factor() noexcept;
 
   std::vector<std::size_t> first_, start_;  // by row: its first column; where that is in lower_

@@ -64,7 +64,7 @@ CodingOrder coding_order(const DeformableObject& object);
 // Data that both ends derive from a mesh: neighbours, rings, coding order and parents. spec/50-deformable.md section 4.
 // Integers only: encoder and decoder must agree on every weight.
 
-/// A vertex coded earlier, and its share in the prediction of a later one.
+/// A vertex coded earlier, and its fraction in the prediction of a later one.
 struct VertexParent {
   std::uint32_t vertex = 0;
   std::int32_t weight = 0;  ///< x 2^-15

@@ -18,7 +18,7 @@ using Row = std::array<std::int64_t, kMost>;
 
 constexpr std::int64_t kOne = 1 << 24;
 constexpr std::int64_t kLeastPivot = 1 << 18;
-constexpr std::int64_t kMostShare = std::int64_t{1} << 34;
+constexpr std::int64_t kMostFraction = std::int64_t{1} << 34;
 constexpr std::array<std::int64_t, DeformableObject::kWeightSets> kNuggets{
     335544, 838861, 5033165};                 // 0.02, 0.05, 0.3: how much of a parent's movement is its own
 constexpr std::uint64_t kSupportRadius = 94;  // squared, in mean squared distances of the parents
@@ -89,17 +89,17 @@ bool solve(Equations& e, Size size) noexcept {
     for (std::size_t i = j + 1; i < size; ++i) {
       const std::int64_t factor = bounded(pivots[j].round(m[i][j] << 24), 1 << 28);
       for (std::size_t k = j + 1; k <= i; ++k) m[i][k] = bounded(m[i][k] - round_shift(factor * m[k][j], 24), 1 << 25);
-      e.a[i] = bounded(e.a[i] - round_shift(factor * e.a[j], 24), kMostShare);
-      e.b[i] = bounded(e.b[i] - round_shift(factor * e.b[j], 24), kMostShare);
+      e.a[i] = bounded(e.a[i] - round_shift(factor * e.a[j], 24), kMostFraction);
+      e.b[i] = bounded(e.b[i] - round_shift(factor * e.b[j], 24), kMostFraction);
     }
   }
   for (std::size_t i = size; i-- > 0;) {
     for (std::size_t k = i + 1; k < size; ++k) {
-      e.a[i] = bounded(e.a[i] - round_shift(m[k][i] * e.a[k], 24), kMostShare);
-      e.b[i] = bounded(e.b[i] - round_shift(m[k][i] * e.b[k], 24), kMostShare);
+      e.a[i] = bounded(e.a[i] - round_shift(m[k][i] * e.a[k], 24), kMostFraction);
+      e.b[i] = bounded(e.b[i] - round_shift(m[k][i] * e.b[k], 24), kMostFraction);
     }
-    e.a[i] = bounded(pivots[i].round(e.a[i] << 24), kMostShare);
-    e.b[i] = bounded(pivots[i].round(e.b[i] << 24), kMostShare);
+    e.a[i] = bounded(pivots[i].round(e.a[i] << 24), kMostFraction);
+    e.b[i] = bounded(pivots[i].round(e.b[i] << 24), kMostFraction);
   }
   return true;
 }
@@ -132,8 +132,8 @@ std::size_t weigh(const RestDistance& distance, const Vec3i& at, std::span<const
   const Divisor whole(std::max(sum_b, kLeastPivot));
   const std::int64_t rest = bounded(kOne - sum_a, 1 << 26);
   for (std::size_t i = 0; i < e.size; ++i) {
-    const std::int64_t share = bounded(whole.round(e.b[i] << 24), kMostShare);
-    const std::int64_t weight = round_shift(e.a[i] + round_shift(share * rest, 24), 9);
+    const std::int64_t fraction = bounded(whole.round(e.b[i] << 24), kMostFraction);
+    const std::int64_t weight = round_shift(e.a[i] + round_shift(fraction * rest, 24), 9);
     out[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(weight, -65536, 65536));
   }
   return e.size;

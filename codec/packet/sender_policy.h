@@ -18,7 +18,7 @@ enum class Baseline : std::uint8_t {
 struct LinkState {
   std::int64_t answer = 0;  ///< [ticks] after which a packet that arrived is acknowledged: round trip, jitter, time between
                             ///< acknowledgements. 0: not known, nothing is sent again
-  double loss = 0;          ///< share of packets, 0 to 1
+  double loss = 0;          ///< fraction of packets, 0 to 1
   bool copies = false;  ///< what is lost also comes again as it was, and in time: nothing is made anew before the answer is due
   bool waits = false;   ///< packets wait for their turn: rigid objects join one sooner. Also with Baseline::repaired
 };

@@ -84,11 +84,11 @@ RigidPose displaced(const RigidPose& pose, const PoseOffset& error, const PoseOf
   return out;
 }
 
-// ==== easing ====
+// ==== error smoothing ====
 
-PoseOffset part_kept(const PoseOffset& whole, std::uint8_t keep) noexcept {
+PoseOffset part_kept(const PoseOffset& whole, std::uint8_t retained) noexcept {
   constexpr std::array kSixteenths{16, 15, 12, 8};
-  const std::int64_t kept = kSixteenths[keep];
+  const std::int64_t kept = kSixteenths[retained];
   PoseOffset out;
   for (std::size_t i = 0; i < 3; ++i) {
     out.position[i] = static_cast<std::int32_t>(round_shift(whole.position[i] * kept, 4));
@@ -98,17 +98,17 @@ PoseOffset part_kept(const PoseOffset& whole, std::uint8_t keep) noexcept {
 }
 
 PoseOffset kept_offset(const RigidPose& shown, const RigidState& update) noexcept {
-  return part_kept(offset_between({update.position, update.rotation}, shown), update.keep);
+  return part_kept(offset_between({update.position, update.rotation}, shown), update.retained);
 }
 
-RigidPose eased(const RigidPose& pose, const RigidState& update, const PoseOffset& offset, std::int64_t tick) noexcept {
-  if (!is_easing(update, tick)) return pose;
-  const std::int64_t left = ((std::int64_t{1} << update.ease) - (tick - update.tick)) << (30 - update.ease);
+RigidPose smoothed(const RigidPose& pose, const RigidState& update, const PoseOffset& offset, std::int64_t tick) noexcept {
+  if (!is_smoothing(update, tick)) return pose;
+  const std::int64_t left = ((std::int64_t{1} << update.smoothing_exp) - (tick - update.tick)) << (30 - update.smoothing_exp);
   return displaced(pose, offset, {}, {left, left, 0});
 }
 
-void EasedPath::follow(const RigidPredictor& predictor, const RigidState& update) noexcept {
-  if (update.ease > 0) offset = kept_offset(pose(predictor, std::max(update.tick, state.tick)), update);
+void SmoothedPath::follow(const RigidPredictor& predictor, const RigidState& update) noexcept {
+  if (update.smoothing_exp > 0) offset = kept_offset(pose(predictor, std::max(update.tick, state.tick)), update);
   state = update;
 }
 

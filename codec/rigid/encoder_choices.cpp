@@ -109,9 +109,9 @@ double ForceTrend::sinking(std::uint32_t object) const noexcept {
   return (before - now) / (now * seconds);
 }
 
-// ==== error share ====
+// ==== error ratio ====
 
-ErrorShare::ErrorShare(std::uint32_t object, const Pose& truth, const Contacts& contacts, const RigidTriggers& triggers,
+ErrorRatio::ErrorRatio(std::uint32_t object, const Pose& truth, const Contacts& contacts, const RigidTriggers& triggers,
                        double sinking) noexcept
     : per_metre_(1 / triggers.visual_position), per_radian_(1 / triggers.visual_rotation), sinking_(sinking) {
   if (triggers.haptic == HapticRule::off) return;
@@ -133,7 +133,7 @@ ErrorShare::ErrorShare(std::uint32_t object, const Pose& truth, const Contacts& 
   }
 }
 
-double ErrorShare::operator()(const Vec3& moved, const Vec3& turned, double later) const noexcept {
+double ErrorRatio::operator()(const Vec3& moved, const Vec3& turned, double later) const noexcept {
   double out = std::max(per_metre_ * norm(moved), per_radian_ * norm(turned));
   for (std::size_t i = 0; i < count_; ++i) {
     const Touch& touch = touches_[i];
@@ -147,12 +147,12 @@ double ErrorShare::operator()(const Vec3& moved, const Vec3& turned, double late
   return out;
 }
 
-// ==== leaning ====
+// ==== look-ahead velocity ====
 
 namespace {
 
 constexpr double kTau = Acceleration::kFade;
-constexpr double kMargin = 0.6;  // share of a bound; the rest is for the error at the update and for what the truth really does
+constexpr double kMargin = 0.6;  // fraction of a bound; the rest is for the error at the update and for what the truth really does
 
 /// [s] s of B [s^2].
 double lead(double ratio) noexcept {
@@ -162,35 +162,35 @@ double lead(double ratio) noexcept {
 
 }  // namespace
 
-Acceleration::Motion leaning(const Acceleration::Motion& acceleration, const ErrorShare& share) noexcept {
-  const double per_second_squared = share(acceleration.linear, acceleration.angular);
+Acceleration::Motion look_ahead_velocity(const Acceleration::Motion& acceleration, const ErrorRatio& ratio) noexcept {
+  const double per_second_squared = ratio(acceleration.linear, acceleration.angular);
   if (per_second_squared == 0) return {};
   const double s = lead(kMargin / per_second_squared);
   return {s * acceleration.linear, s * acceleration.angular};
 }
 
-// ==== ease choice ====
+// ==== smoothing choice ====
 
 namespace {
 
-constexpr double kInside = 0.7;  // share of the bounds at the end, 1 at the begin: the truth will not do exactly what is taken
+constexpr double kInside = 0.7;  // fraction of the bounds at the end, 1 at the begin: the truth will not do exactly what is taken
 constexpr std::array kParts{0.25, 0.5, 0.75, 1.0};
 
-bool stays_inside(const UpdateCourse& c, const ErrorShare& share, double duration) noexcept {
+bool stays_inside(const UpdateCourse& c, const ErrorRatio& ratio, double duration) noexcept {
   for (const double part : kParts) {
     const double t = part * duration, left = 1 - part, gone = Acceleration::departure(t);
     const Vec3 moved = left * c.offset.moved + c.error.moved + t * c.drift.linear - gone * c.acceleration.linear;
     const Vec3 turned = left * c.offset.turned + c.error.turned + t * c.drift.angular - gone * c.acceleration.angular;
-    if (!(share(moved, turned, t) <= 1 - (1 - kInside) * part)) return false;
+    if (!(ratio(moved, turned, t) <= 1 - (1 - kInside) * part)) return false;
   }
   return true;
 }
 
 }  // namespace
 
-std::uint8_t longest_ease(const UpdateCourse& course, const ErrorShare& share, std::uint32_t tick_rate) noexcept {
-  for (int ease = usual_ease(tick_rate); ease > 0; --ease)
-    if (stays_inside(course, share, static_cast<double>(1u << ease) / tick_rate)) return static_cast<std::uint8_t>(ease);
+std::uint8_t longest_smoothing_exp(const UpdateCourse& course, const ErrorRatio& ratio, std::uint32_t tick_rate) noexcept {
+  for (int smoothing_exp = usual_smoothing_exp(tick_rate); smoothing_exp > 0; --smoothing_exp)
+    if (stays_inside(course, ratio, static_cast<double>(1u << smoothing_exp) / tick_rate)) return static_cast<std::uint8_t>(smoothing_exp);
   return 0;
 }
 

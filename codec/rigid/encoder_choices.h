@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the encoder of rigid objects chooses, and what it looks at for that: accelerations, forces that sink, the share of the bounds that an error
-/// takes; from these the velocity it tells, how long an update eases, and which predictor. A decoder reads the choices. Internal to the library.
+/// What the encoder of rigid objects chooses, and what it looks at for that: accelerations, forces that sink, the ratio of an error
+/// to its bounds; from these the velocity it tells, how long an update is smoothed, and which predictor. A decoder reads the choices. Internal to the library.
 #pragma once
 
 #include <array>
@@ -125,17 +125,17 @@ class ForceTrend {
   std::array<std::vector<std::uint32_t>, 3> touched_;  // where they are finite
 };
 
-// ==== error share ====
-// The share of its bounds that a small error of an object's pose takes, to first order: by it an encoder looks ahead. Internal to the
+// ==== error ratio ====
+// The ratio of a small error of an object's pose to its bounds, to first order: by it an encoder looks ahead. Internal to the
 // library; the bounds themselves are checked without it.
 
-class ErrorShare {
+class ErrorRatio {
  public:
   static constexpr std::size_t kMostContacts = 8;  ///< of the object; those after them are not looked at
 
   /// in  triggers  widened;  truth  pose of the object;  sinking  ForceTrend, of all its contacts
   /// time O(contacts), about 30 ns for each of the object's
-  ErrorShare(std::uint32_t object, const Pose& truth, const Contacts& contacts, const RigidTriggers& triggers,
+  ErrorRatio(std::uint32_t object, const Pose& truth, const Contacts& contacts, const RigidTriggers& triggers,
              double sinking = 0) noexcept;
 
   /// in   moved  [m], turned  [rad] from the true pose to the shown one, world frame;  later  [s] from now
@@ -147,9 +147,9 @@ class ErrorShare {
     Vec3 lever;         // [m] from the object's origin to the point of contact, world frame
     Vec3 normal;        // zero: all directions count
     double depth;       // [m] of the probe below the face: what a tilt of the face turns
-    double per_metre;   // share per metre of error at the point
+    double per_metre;   // ratio per metre of error at the point
     double least;       // what a force that sinks leaves of what is permitted
-    double per_radian;  // share per radian of the object
+    double per_radian;  // ratio per radian of the object
   };
 
   double per_metre_, per_radian_, sinking_;
@@ -157,8 +157,8 @@ class ErrorShare {
   std::size_t count_ = 0;
 };
 
-// ==== leaning ====
-// A velocity for an update that makes it last longer: it leans towards the acceleration, so that the error of the prediction first goes
+// ==== look-ahead velocity ====
+// A velocity for an update that makes it last longer: it looks ahead along the acceleration, so that the error of the prediction first goes
 // to one side of its bounds and then to the other. Informative: an encoder's choice; a decoder sees a velocity like any other.
 //
 //   v' = v + s a,  w' = w + s alpha                                    for all of one object the same s
@@ -170,10 +170,10 @@ class ErrorShare {
 // with s = 0. What the truth really does decides how long it lasts, never whether a bound holds.
 
 /// The velocities to tell, less the true ones [m/s, rad/s].   time about 30 ns
-Acceleration::Motion leaning(const Acceleration::Motion& acceleration, const ErrorShare& share) noexcept;
+Acceleration::Motion look_ahead_velocity(const Acceleration::Motion& acceleration, const ErrorRatio& ratio) noexcept;
 
-// ==== ease choice ====
-// How long an update of an eased scene may take to pass over to its own path. Informative: an encoder's choice.
+// ==== smoothing choice ====
+// How long an update of a smoothed scene may take to pass over to its own path. Informative: an encoder's choice.
 
 /// An error of position [m] and rotation [rad], world frame, less than a right angle.
 struct SmallError {
@@ -189,10 +189,10 @@ struct UpdateCourse {
   Acceleration::Motion acceleration;  ///< of the truth
 };
 
-/// `ease`: the longest T = 2^ease ticks, of at most 16 ms, during which the error stays inside its bounds; 0 if even two ticks are
+/// `smoothing_exp`: the longest T = 2^smoothing_exp ticks, of at most 16 ms, during which the error stays inside its bounds; 0 if even two ticks are
 /// too long.
 /// time O(contacts), about 0.3 us with one
-std::uint8_t longest_ease(const UpdateCourse& course, const ErrorShare& share, std::uint32_t tick_rate) noexcept;
+std::uint8_t longest_smoothing_exp(const UpdateCourse& course, const ErrorRatio& ratio, std::uint32_t tick_rate) noexcept;
 
 // ==== driven choice ====
 // What an update would tell of the device that drives an object: where it touches, and the drag that explains how the object moved of late.

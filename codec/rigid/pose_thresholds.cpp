@@ -11,7 +11,7 @@
 namespace tactus {
 
 constexpr unsigned kCoarsestLevel = 15;
-constexpr double kVisualShare = 0.18;  // of a bound may the rounding to a level use up; the rest is for the motion after it
+constexpr double kVisualFraction = 0.18;  // of a bound may the rounding to a level use up; the rest is for the motion after it
 
 Result<PoseThresholds> pose_thresholds(double distance, double angle, const GridExponents& grid) noexcept {
   const double unit = std::ldexp(1.0, -grid.position);
@@ -26,7 +26,7 @@ Result<PoseThresholds> pose_thresholds(double distance, double angle, const Grid
   const std::int64_t sine = sin30(half) - 8;
   out.half_angle_squared = sine * sine;
   const double worst = std::sqrt(0.75);
-  const auto fits = [worst](double step, double bound) { return worst * step <= kVisualShare * bound; };
+  const auto fits = [worst](double step, double bound) { return worst * step <= kVisualFraction * bound; };
   while (out.level < kCoarsestLevel && fits(std::ldexp(unit, static_cast<int>(out.level) + 1), distance) &&
          fits(std::ldexp(turn_unit, static_cast<int>(out.level) + 1), angle)) {
     ++out.level;
@@ -39,9 +39,9 @@ PoseThresholds widened(double distance, double angle, double factor, const GridE
       .value_or(PoseThresholds{});
 }
 
-PoseThresholds scaled(PoseThresholds t, double share) noexcept {
-  t.distance_squared = static_cast<std::int64_t>(share * share * static_cast<double>(t.distance_squared));
-  t.half_angle_squared = static_cast<std::int64_t>(share * share * static_cast<double>(t.half_angle_squared));
+PoseThresholds scaled(PoseThresholds t, double fraction) noexcept {
+  t.distance_squared = static_cast<std::int64_t>(fraction * fraction * static_cast<double>(t.distance_squared));
+  t.half_angle_squared = static_cast<std::int64_t>(fraction * fraction * static_cast<double>(t.half_angle_squared));
   return t;
 }
 

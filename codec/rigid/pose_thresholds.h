@@ -22,8 +22,8 @@ Result<PoseThresholds> pose_thresholds(double distance, double angle, const Grid
 /// Of `factor` times both, as far as there are such thresholds.   pre  pose_thresholds(distance, angle) gives some; factor >= 1
 PoseThresholds widened(double distance, double angle, double factor, const GridExponents& grid) noexcept;
 
-/// A share of what is permitted; the grid level stays.
-PoseThresholds scaled(PoseThresholds t, double share) noexcept;
+/// A fraction of what is permitted; the grid level stays.
+PoseThresholds scaled(PoseThresholds t, double fraction) noexcept;
 
 /// time 10 ns, no allocation
 bool within(const PoseThresholds& t, const RigidPose& shown, const RigidState& truth) noexcept;

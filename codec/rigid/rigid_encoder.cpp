@@ -15,13 +15,13 @@
 namespace tactus {
 namespace {
 
-constexpr double kHapticShare = 0.2;  // of a bound may the rounding of an update use up
+constexpr double kHapticFraction = 0.2;  // of a bound may the rounding of an update use up
 // Unless packets build on the one before and nobody repairs them, objects near their bounds join a packet that goes out anyway: a datagram's
 // headers cost more than an update. Where packets wait for their turn few objects join whenever they move at all.
-constexpr double kEarly = 0.5, kEarlyAtHeavyLoss = 0.3, kFewEarly = 0.3, kVeryFewEarly = 0.15;  // shares of a bound
+constexpr double kEarly = 0.5, kEarlyAtHeavyLoss = 0.3, kFewEarly = 0.3, kVeryFewEarly = 0.15;  // fractions of a bound
 constexpr std::size_t kFew = 24, kVeryFew = 12;                                                 // objects that are awake
 // Baseline::acknowledged: what is not acknowledged goes again.
-constexpr double kSomeLoss = 0.003, kMoreLoss = 0.01, kHeavyLoss = 0.15;  // shares of packets
+constexpr double kSomeLoss = 0.003, kMoreLoss = 0.01, kHeavyLoss = 0.15;  // fractions of packets
 constexpr std::array kFollowUp{0.020, 0.040, 0.060};                      // [s] since the last sending
 
 Vec3 to_vector(const Vec3i& v, unsigned exponent) noexcept {
@@ -37,7 +37,7 @@ SmallError error_of(const Pose& truth, const Pose& shown) noexcept {
 
 bool are_valid(const RigidTriggers& t) noexcept {
   return std::isfinite(t.heartbeat) && t.heartbeat >= 0 && t.heartbeat <= 3600 && t.weber_fraction > 0 && t.weber_fraction <= 1 &&
-         t.perceptual_share > 0 && t.perceptual_share <= 1 && std::isfinite(t.force_floor) && t.force_floor > 0 &&
+         t.perceptual_fraction > 0 && t.perceptual_fraction <= 1 && std::isfinite(t.force_floor) && t.force_floor > 0 &&
          std::isfinite(t.cone_angle) && t.cone_angle > 0 && t.cone_angle <= std::numbers::pi;
 }
 
@@ -122,7 +122,7 @@ void RigidEncoder::take() noexcept {
   wake();
 }
 
-/// From which share of its bounds on an object joins a packet.
+/// From which fraction of its bounds on an object joins a packet.
 void RigidEncoder::choose_early() noexcept {
   if (early_ == 1) return;
   double early = acknowledges_ && loses_much_ ? kEarlyAtHeavyLoss : kEarly;
@@ -181,7 +181,7 @@ void RigidEncoder::look() noexcept {
 /// The prediction from this state is where it will be.
 bool RigidEncoder::stands_still(const RigidState& state) const noexcept {
   const std::int64_t tick = truth_.tick();
-  if (is_easing(state, tick) || state.predictor == Predictor::driven) return false;
+  if (is_smoothing(state, tick) || state.predictor == Predictor::driven) return false;
   if (tick - state.tick >= scene_.max_extrapolation) return true;
   if (state.predictor == Predictor::ballistic) return false;
   if (state.velocity == Vec3i{} && state.angular_velocity == Vec3i{}) return true;
@@ -236,17 +236,17 @@ bool RigidEncoder::can_improve(std::uint32_t object, const RigidPose& shown) con
 }
 
 /// in   early  ask whether it would soon cause a packet, too
-RigidDecision RigidEncoder::decide_alone(const EasedPath& path, bool early) const noexcept {
+RigidDecision RigidEncoder::decide_alone(const SmoothedPath& path, bool early) const noexcept {
   const std::uint32_t object = path.object;
   const std::int64_t tick = truth_.tick();
   const RigidState& truth = truth_.state(object);
   const RigidPose course = predictor_.shown(object, path.state, tick);
-  const RigidPose shown = eased(course, path.state, path.offset, tick);
+  const RigidPose shown = smoothed(course, path.state, path.offset, tick);
   const double felt = haptic_ratio_of(object, shown);
   const Bounds& bounds = bounds_of(object);
   RigidDecision out;
   if (felt > bounds.widening && can_improve(object, shown)) out.reason = Reason::haptic;
-  else if (!within(bounds.visual, shown, truth) || (is_easing(path.state, tick) && !within(bounds.visual, course, truth)))
+  else if (!within(bounds.visual, shown, truth) || (is_smoothing(path.state, tick) && !within(bounds.visual, course, truth)))
     out.reason = Reason::visual;
   else if (heartbeat_ > 0 && tick - path.state.tick >= heartbeat_) out.reason = Reason::heartbeat;
   out.is_early =
@@ -256,7 +256,7 @@ RigidDecision RigidEncoder::decide_alone(const EasedPath& path, bool early) cons
 
 /// The same, or what another encoder found.
 RigidDecision RigidEncoder::decide(std::uint32_t object, bool early) noexcept {
-  const EasedPath& path = sent_[object].path;
+  const SmoothedPath& path = sent_[object].path;
   if (work_ == nullptr || (driven_ && path.state.predictor == Predictor::driven)) return decide_alone(path, early);
   const RigidWork::Asked asked{sent_[object].version, object, bounds_of(object).widening, early ? early_ : 1};
   if (const RigidDecision* const known = work_->find(read_, asked)) return *known;
@@ -308,7 +308,7 @@ void RigidEncoder::add_joining(const EncodeRequest<RigidStates>& request) noexce
 
 RigidTriggers RigidEncoder::widened_triggers(std::uint32_t object) const noexcept {
   RigidTriggers out = triggers_;
-  for (double* bound : {&out.visual_position, &out.visual_rotation, &out.weber_fraction, &out.perceptual_share,
+  for (double* bound : {&out.visual_position, &out.visual_rotation, &out.weber_fraction, &out.perceptual_fraction,
                         &out.fixed_position, &out.fixed_rotation})
     *bound *= bounds_of(object).widening;
   return out;
@@ -328,11 +328,11 @@ Predictor RigidEncoder::chosen(std::uint32_t object, const RigidState& truth, co
 }
 
 /// The true state with the velocities that an update is to tell.   pre  it is predicted linearly
-RigidState RigidEncoder::leaned(const RigidState& truth, std::uint32_t object, const Acceleration::Motion& acceleration,
-                                const ErrorShare& share) const noexcept {
+RigidState RigidEncoder::with_look_ahead(const RigidState& truth, std::uint32_t object, const Acceleration::Motion& acceleration,
+                                const ErrorRatio& ratio) const noexcept {
   if (truth_.acceleration() == nullptr || loses_) return truth;
   RigidSample sample = truth_.samples()[object];
-  const Acceleration::Motion more = leaning(acceleration, share);
+  const Acceleration::Motion more = look_ahead_velocity(acceleration, ratio);
   sample.velocity = sample.velocity + more.linear;
   sample.angular_velocity = sample.angular_velocity + more.angular;
   return to_grid(sample, truth.tick, scene_.grid).value_or(truth);
@@ -348,31 +348,31 @@ UpdateCourse RigidEncoder::course_of(const RigidState& state, const RigidPose& k
 }
 
 /// As much of the pose shown so far as the bounds permit, for as long as they are likely to.
-void RigidEncoder::choose_ease(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
-                               const ErrorShare& share) const noexcept {
+void RigidEncoder::choose_smoothing(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
+                               const ErrorRatio& ratio) const noexcept {
   const std::uint32_t object = update.object;
   const RigidPose shown = sent_[object].path.pose(predictor_, truth_.tick());
   RigidState tried = update.after.path.state;
   const RigidPose own{tried.position, tried.rotation};
   const PoseOffset offset = offset_between(own, shown);
-  tried.ease = 1;
-  tried.keep = update.reason == Reason::haptic ? 1 : 0;  // all of it is what is felt
-  for (; tried.keep < 4; ++tried.keep) {
-    const RigidPose kept = eased(own, tried, part_kept(offset, tried.keep), tried.tick);
+  tried.smoothing_exp = 1;
+  tried.retained = update.reason == Reason::haptic ? 1 : 0;  // all of it is what is felt
+  for (; tried.retained < 4; ++tried.retained) {
+    const RigidPose kept = smoothed(own, tried, part_kept(offset, tried.retained), tried.tick);
     const Bounds& bounds = bounds_of(object);
     if (!within(bounds.visual, kept, truth_.state(object)) || haptic_ratio_of(object, kept) > bounds.widening) continue;
-    tried.ease = longest_ease(course_of(tried, kept, truth_.samples()[object], acceleration), share, scene_.tick_rate);
-    if (tried.ease == 0) return;
+    tried.smoothing_exp = longest_smoothing_exp(course_of(tried, kept, truth_.samples()[object], acceleration), ratio, scene_.tick_rate);
+    if (tried.smoothing_exp == 0) return;
     update.after.path.state = tried;
-    coded.ease = tried.ease;
-    coded.keep = tried.keep;
+    coded.smoothing_exp = tried.smoothing_exp;
+    coded.retained = tried.retained;
     return;
   }
 }
 
 /// The update of one object, and the state after it. A predictor other than the linear one counts as knowing the acceleration.
-/// A key packet is not eased: a client may begin with it, and has shown nothing of what the path would begin with. So is what was out of
-/// interest. What is held rests: it does not lean.
+/// A key packet is not smoothed: a client may begin with it, and has shown nothing of what the path would begin with. So is what was out of
+/// interest. What is held rests: it has no look-ahead.
 Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<RigidStates>& request) const noexcept {
   const std::uint32_t object = update.object;
   const RigidState& base = request.base.objects[object];
@@ -382,15 +382,15 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
   const RigidTriggers bounds = widened_triggers(object);
   const Predictor predictor = choice_ ? chosen(object, truth, bounds) : Predictor::linear;
   const bool is_linear = predictor == Predictor::linear;
-  const ErrorShare share(object, truth_.samples()[object].pose, truth_.contacts(), bounds,
+  const ErrorRatio ratio(object, truth_.samples()[object].pose, truth_.contacts(), bounds,
                          truth_.force_trend() != nullptr ? truth_.force_trend()->sinking(object) : 0);
-  const bool leans = truth_.acceleration() != nullptr && is_linear;
-  const auto acceleration = leans ? truth_.acceleration()->of(object) : Acceleration::Motion{};
-  RigidState told = is_linear ? leaned(truth, object, acceleration, share) : truth;
+  const bool looks_ahead = truth_.acceleration() != nullptr && is_linear;
+  const auto acceleration = looks_ahead ? truth_.acceleration()->of(object) : Acceleration::Motion{};
+  RigidState told = is_linear ? with_look_ahead(truth, object, acceleration, ratio) : truth;
   told.predictor = predictor;
   TACTUS_TRY(CodedUpdate coded, quantise(update, prediction, told));
   const bool is_shown = sent_[object].path.state.lod != kOutOfInterest;
-  if (truth_.acceleration() != nullptr && !request.head.key && is_shown) choose_ease(update, coded, acceleration, share);
+  if (truth_.acceleration() != nullptr && !request.head.key && is_shown) choose_smoothing(update, coded, acceleration, ratio);
   return coded;
 }
 
@@ -420,7 +420,7 @@ Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& pr
     const double felt = haptic_ratio_of(object, shown);
     if ((level > 0 || finest) && felt > bounds.widening) continue;
     update.after.path.state = *state;
-    if (felt <= kHapticShare * bounds.widening) return coded;
+    if (felt <= kHapticFraction * bounds.widening) return coded;
     finest = coded;
   }
   return *finest;  // that of level 0, if no other

@@ -4,7 +4,7 @@
 ///
 /// After every tick what a decoder shows obeys, for every object and contact given,
 ///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1.
-/// In an eased scene that is the eased path.
+/// In a smoothed scene that is the smoothed path.
 /// A bound finer than the grid (a small force_floor, a stiff contact) means the nearest grid point.
 /// The encoder picks for every update the coarsest grid level that keeps the quantised state well inside these bounds. It
 /// evaluates the haptic error in floating point, which is an encoder's choice; decoding is in integers.
@@ -60,7 +60,7 @@ class RigidEncoder {
 
   /// What a receiver of every packet shows of an object.
   struct Sent {
-    EasedPath path;
+    SmoothedPath path;
     std::uint64_t version = 0;    // of the path, where work is shared
     std::uint64_t number = 0;     // of the packet that said so
     std::uint8_t follow_ups = 0;  // since a trigger asked for it
@@ -95,7 +95,7 @@ class RigidEncoder {
   bool stands_still(const RigidState& state) const noexcept;
   std::optional<std::int64_t> sleeps_until(std::uint32_t object) noexcept;
   RigidDecision decide(std::uint32_t object, bool early) noexcept;
-  RigidDecision decide_alone(const EasedPath& path, bool early) const noexcept;
+  RigidDecision decide_alone(const SmoothedPath& path, bool early) const noexcept;
   bool can_improve(std::uint32_t object, const RigidPose& shown) const noexcept;
   double haptic_ratio_of(std::uint32_t object, const RigidPose& shown) const noexcept;
   bool is_touched(std::uint32_t object) const noexcept;
@@ -106,12 +106,12 @@ class RigidEncoder {
   RigidTriggers widened_triggers(std::uint32_t object) const noexcept;
   RigidState truth_of(std::uint32_t object) const noexcept;
   Predictor chosen(std::uint32_t object, const RigidState& truth, const RigidTriggers& bounds) const noexcept;
-  RigidState leaned(const RigidState& truth, std::uint32_t object, const Acceleration::Motion& acceleration,
-                    const ErrorShare& share) const noexcept;
+  RigidState with_look_ahead(const RigidState& truth, std::uint32_t object, const Acceleration::Motion& acceleration,
+                    const ErrorRatio& ratio) const noexcept;
   UpdateCourse course_of(const RigidState& state, const RigidPose& kept, const RigidSample& truth,
                          const Acceleration::Motion& acceleration) const noexcept;
-  void choose_ease(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
-                   const ErrorShare& share) const noexcept;
+  void choose_smoothing(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
+                   const ErrorRatio& ratio) const noexcept;
   Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction, const RigidState& told) const noexcept;
   Result<CodedUpdate> code(Pending& update, const EncodeRequest<RigidStates>& request) const noexcept;
   Result<Payload> code_all(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
@@ -125,8 +125,8 @@ class RigidEncoder {
   std::array<Bounds, kOutOfInterest + 1> bounds_;  // by level of detail
   bool acknowledges_;                              // Baseline::acknowledged
   bool waits_ = false;                             // packets wait for their turn
-  double early_ = 1;                               // share of its bounds over which an object joins a packet
-  // Packets get lost: velocities do not lean, as curves over gaps end with them. More do: no device drives, as what the client does not
+  double early_ = 1;                               // fraction of its bounds over which an object joins a packet
+  // Packets get lost: velocities do not look ahead, as curves over gaps end with them. More do: no device drives, as what the client does not
   // know of it lasts for a round trip.
   bool loses_ = false, loses_more_ = false, loses_much_ = false;
   std::array<std::int64_t, 3> follow_up_{};  // [ticks] without an acknowledgement before the first, the second and later; 0: none

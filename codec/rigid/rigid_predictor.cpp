@@ -252,9 +252,9 @@ namespace {
 
 constexpr std::int64_t kWhole = 1 << 15;
 
-/// in   share  x 2^-15
-std::int64_t part_of(std::int64_t way, std::int64_t share) noexcept {
-  return share == kWhole ? way : round_shift(way * share, 15);
+/// in   fraction  x 2^-15
+std::int64_t part_of(std::int64_t way, std::int64_t fraction) noexcept {
+  return fraction == kWhole ? way : round_shift(way * fraction, 15);
 }
 
 /// Half the angle turned in `dt` ticks, 2^32 to the full circle, and the axis. spec 40-rigid 4
@@ -263,15 +263,15 @@ struct Turn {
   std::uint32_t half = 0;
 };
 
-/// in   share  of dt that is turned through, x 2^-15
-Turn turn_of(const Vec3i& angular_velocity, std::int64_t dt, std::int64_t share, std::uint32_t tick_rate,
+/// in   fraction  of dt that is turned through, x 2^-15
+Turn turn_of(const Vec3i& angular_velocity, std::int64_t dt, std::int64_t fraction, std::uint32_t tick_rate,
              unsigned exponent) noexcept {
   std::int64_t square = 0;
   for (const std::int32_t c : angular_velocity) square += static_cast<std::int64_t>(c) * c;
   const std::int64_t speed = isqrt(static_cast<std::uint64_t>(square) << 10);  // x 2^-(exponent + 5) rad/s
   if (speed == 0) return {};
   constexpr std::uint64_t kTurnPerHalfRadian = 341782638;  // 2^32 / (4 pi)
-  const auto angle = static_cast<std::uint64_t>(part_of(round_div(speed * dt, tick_rate), share));
+  const auto angle = static_cast<std::uint64_t>(part_of(round_div(speed * dt, tick_rate), fraction));
   Turn turn;
   turn.half = static_cast<std::uint32_t>((angle * kTurnPerHalfRadian + (std::uint64_t{1} << (exponent + 4))) >> (exponent + 5));
   for (std::size_t i = 0; i < 3; ++i) {
@@ -290,8 +290,8 @@ std::int64_t slide_time(const Vec3i& velocity, std::uint32_t tick_rate, std::int
 /// The tick in which a sliding object comes to rest.
 std::int64_t last_tick(std::int64_t rest) noexcept { return (rest + 255) >> 8; }
 
-/// Share of the way at constant velocity that is left of it after `dt` ticks of sliding, x 2^-15.   pre  0 < dt <= last_tick(rest)
-std::int64_t slide_share(std::int64_t dt, std::int64_t rest) noexcept {
+/// Fraction of the way at constant velocity that is left of it after `dt` ticks of sliding, x 2^-15.   pre  0 < dt <= last_tick(rest)
+std::int64_t slide_fraction(std::int64_t dt, std::int64_t rest) noexcept {
   const std::int64_t t = dt << 8;
   return t <= rest ? kWhole - round_div(t << 14, rest) : round_div(rest << 14, t);
 }
@@ -312,22 +312,22 @@ void RigidPredictor::fall(std::int64_t dt, RigidPose& pose) const noexcept {
 
 RigidPose RigidPredictor::pose(const RigidState& state, std::int64_t tick) const noexcept {
   std::int64_t dt = std::min<std::int64_t>(tick - state.tick, scene_.max_extrapolation);
-  std::int64_t share = kWhole;  // of dt
+  std::int64_t fraction = kWhole;  // of dt
   RigidPose pose{state.position, state.rotation};
   if (state.predictor == Predictor::slide && dt > 0) {
     const std::int64_t rest = slide_time(state.velocity, scene_.tick_rate, scene_.motion->slide_deceleration);
     dt = std::min(dt, last_tick(rest));  // so that it rests to the bit
-    if (dt > 0) share = slide_share(dt, rest);
+    if (dt > 0) fraction = slide_fraction(dt, rest);
   }
   if (dt == 0) return pose;
   constexpr std::int64_t kFar = std::int64_t{1} << 33;  // half of it is beyond every place
   const unsigned shift = static_cast<unsigned>(scene_.grid.position - scene_.grid.velocity);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t moved = std::clamp(round_div((state.velocity[i] * dt) << shift, scene_.tick_rate), -kFar, kFar);
-    pose.position[i] = saturate32(state.position[i] + part_of(moved, share));
+    pose.position[i] = saturate32(state.position[i] + part_of(moved, fraction));
   }
   if (state.predictor == Predictor::ballistic) fall(dt, pose);
-  const Turn turn = turn_of(state.angular_velocity, dt, share, scene_.tick_rate, scene_.grid.angular_velocity);
+  const Turn turn = turn_of(state.angular_velocity, dt, fraction, scene_.tick_rate, scene_.grid.angular_velocity);
   if (turn.half != 0) pose.rotation = renormalise(multiply(axis_turn(turn.axis, turn.half), state.rotation));
   return pose;
 }

@@ -41,7 +41,7 @@ std::uint64_t state_hash(const Scene& scene, const RigidStates& states) noexcept
     for (const std::int32_t v : s.rotation) hash.add32(v);
     for (const std::int32_t v : s.velocity) hash.add32(v);
     for (const std::int32_t v : s.angular_velocity) hash.add32(v);
-    if (scene.is_eased) hash.add32(s.ease + 8 * s.keep);
+    if (scene.is_smoothed) hash.add32(s.smoothing_exp + 8 * s.retained);
     if (scene.motion || scene.driven) hash.add32(static_cast<std::int32_t>(s.predictor));
     if (scene.driven) {
       hash.add32(s.contact.is_held ? 1 : 0);

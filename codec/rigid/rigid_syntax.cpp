@@ -154,8 +154,8 @@ std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Pre
                  motion.velocity,
                  motion.angular_velocity,
                  static_cast<Predictor>(update.predictor),
-                 update.ease,
-                 update.keep,
+                 update.smoothing_exp,
+                 update.retained,
                  static_cast<std::uint8_t>((prediction.base.lod + update.lod) & 7u),
                  prediction.base.contact};
   if (out.predictor == Predictor::driven) out.contact = contact_of(prediction.base, update);
@@ -172,7 +172,7 @@ std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Pre
 std::size_t max_rigid_packet(const Scene& scene) noexcept {
   constexpr std::size_t kHead = 64;  // sequence, key, baseline, tick, count, tail
   constexpr std::size_t kUpdate =
-      208;  // gap, reason, level, predictor, ease, keep, lod and 12 components at 15 bits per adaptive bit
+      208;  // gap, reason, level, predictor, smoothing_exp, retained, lod and 12 components at 15 bits per adaptive bit
   const std::size_t contact = scene.driven ? 88 : 0;  // 7 more
   return kHead + (kUpdate + contact) * scene.moving().size();
 }

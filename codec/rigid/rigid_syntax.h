@@ -37,8 +37,8 @@ struct RigidModels {
   MagnitudeModel gap;
   TreeModel<2> reason;
   TreeModel<4> level;
-  TreeModel<3> ease;
-  TreeModel<2> keep;
+  TreeModel<3> smoothing_exp;
+  TreeModel<2> retained;
   std::array<ResidualModels, 2> residual;  // position and velocity; rotation and angular velocity
   std::array<TreeModel<2>, 8> predictor;   // by reason; in driven scenes by 4 + reason
   std::array<MagnitudeModel, 3> contact;   // of point, normal and drag
@@ -60,7 +60,7 @@ struct Residual {
 struct CodedUpdate {
   Reason reason = Reason::request;
   std::uint8_t level = 0;
-  std::uint8_t ease = 0, keep = 0;  ///< as in RigidState; 0 in a scene that is not eased
+  std::uint8_t smoothing_exp = 0, retained = 0;  ///< as in RigidState; 0 in a scene that is not smoothed
   Residual residual;
   std::uint8_t predictor = 0;
   std::uint8_t lod = 0;                   ///< less that of the baseline, modulo 8
@@ -113,8 +113,8 @@ void code_residual(Coder& coder, ResidualModels& models, unsigned axes, Reason r
   }
 }
 
-/// What an eased update mostly has: the longest of at most 1/62 s, so that its symbol is the same at every tick rate.
-constexpr std::uint8_t usual_ease(std::uint32_t tick_rate) noexcept {
+/// What a smoothed update mostly has: the longest of at most 1/62 s, so that its symbol is the same at every tick rate.
+constexpr std::uint8_t usual_smoothing_exp(std::uint32_t tick_rate) noexcept {
   const auto width = static_cast<unsigned>(std::bit_width(std::min(tick_rate / 62, 255u)));
   return static_cast<std::uint8_t>(width > 0 ? width - 1 : 0);
 }
@@ -133,11 +133,13 @@ void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uin
   update.reason = static_cast<Reason>(coder.template tree<2>(models.reason, static_cast<std::uint32_t>(update.reason)));
   update.level = static_cast<std::uint8_t>(coder.template tree<4>(models.level, update.level));
   if (scene.interest) update.lod = static_cast<std::uint8_t>(coder.template tree<3>(models.lod, update.lod));
-  if (scene.is_eased) {
-    const std::uint32_t usual = usual_ease(scene.tick_rate);
-    update.ease = static_cast<std::uint8_t>((usual - coder.template tree<3>(models.ease, (usual - update.ease) & 7u)) & 7u);
+  if (scene.is_smoothed) {
+    const std::uint32_t usual = usual_smoothing_exp(scene.tick_rate);
+    update.smoothing_exp = static_cast<std::uint8_t>(
+        (usual - coder.template tree<3>(models.smoothing_exp, (usual - update.smoothing_exp) & 7u)) & 7u);
   }
-  if (update.ease > 0) update.keep = static_cast<std::uint8_t>(coder.template tree<2>(models.keep, update.keep));
+  if (update.smoothing_exp > 0)
+    update.retained = static_cast<std::uint8_t>(coder.template tree<2>(models.retained, update.retained));
   if (has_predictors(scene)) {
     TreeModel<2>& model = models.predictor[static_cast<std::size_t>(update.reason) + (scene.driven ? 4 : 0)];
     update.predictor = static_cast<std::uint8_t>(coder.template tree<2>(model, update.predictor));

@@ -50,8 +50,8 @@ RigidTruth::RigidTruth(const Scene& scene, const RigidTriggers& triggers, HeldLi
   }
   for (auto* list : {&moved_, &recent_, &touched_, &left_}) list->reserve(scene.objects.size());
   if (triggers.reduction == Reduction::none) return;
-  if (scene.is_eased) acceleration_.emplace(scene);
-  if (scene.is_eased && triggers.haptic != HapticRule::off) force_trend_.emplace(scene);
+  if (scene.is_smoothed) acceleration_.emplace(scene);
+  if (scene.is_smoothed && triggers.haptic != HapticRule::off) force_trend_.emplace(scene);
   if (has_predictors(scene)) past_.emplace(scene);
 }
 

@@ -74,8 +74,8 @@ class RigidTruth {
   std::vector<std::uint32_t> touched_, left_;
   std::vector<std::uint8_t> has_left_;                // by object
   std::vector<std::uint64_t> moved_at_, touched_at_;  // by object: the read
-  std::optional<Acceleration> acceleration_;          // where updates lean or are eased
-  std::optional<ForceTrend> force_trend_;             // where they are eased and forces count
+  std::optional<Acceleration> acceleration_;          // where updates look ahead or are smoothed
+  std::optional<ForceTrend> force_trend_;             // where they are smoothed and forces count
   std::optional<PastStates> past_;                    // if there is a choice of predictors
 };
 

@@ -24,7 +24,7 @@ struct RigidDecision {
 
 /// A path of an object and a version: paths of one object and one version are equal. 0: that from its initial state.
 struct VersionedPath {
-  EasedPath path;
+  SmoothedPath path;
   std::uint64_t version = 0;
 };
 

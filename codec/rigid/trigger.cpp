@@ -11,7 +11,7 @@ namespace tactus {
 
 double force_budget(const RigidTriggers& triggers, double force) noexcept {
   const double counted = std::max(force, triggers.force_floor);
-  if (triggers.haptic == HapticRule::perceptual) return triggers.perceptual_share * perceptual_fraction(counted) * counted;
+  if (triggers.haptic == HapticRule::perceptual) return triggers.perceptual_fraction * weber_fraction_at(counted) * counted;
   return triggers.weber_fraction * counted;
 }
 
@@ -30,7 +30,7 @@ double haptic_ratio(const RigidTriggers& triggers, const Vec3& truth, const Vec3
   return std::max(magnitude, direction);
 }
 
-double perceptual_fraction(double force) noexcept {
+double weber_fraction_at(double force) noexcept {
   struct Point {
     double force, fraction;
   };

@@ -59,7 +59,7 @@ double haptic_ratio(const RigidTriggers& triggers, const Vec3& truth, const Vec3
 
 /// Weber fraction of force magnitude, measured in human subjects: 10 % from 2.5 N up, 14 % at 1 N, 17 % at 0.5 N, 22 % at 0.3 N
 /// and below, linear between.   spec 20-scene 6; thesis table 2.1
-double perceptual_fraction(double force) noexcept;
+double weber_fraction_at(double force) noexcept;
 
 /// alpha_max = arcsin p: the largest angle between two forces inside an isotropic deadzone [rad]; half a circle from p = 1 on, where
 /// no direction is excluded.   thesis eq. 3.3

@@ -44,7 +44,7 @@ bool is_cluster_basis(const DeformableObject& m) noexcept {
 bool is_basis(const DeformableObject& m) noexcept {
   const ModeBasis& b = m.basis;
   if (m.cluster_basis.count > 0) return is_cluster_basis(m);
-  if (!m.cluster_basis.clusters.empty() || !b.shares.items.empty()) return false;
+  if (!m.cluster_basis.clusters.empty() || !b.cluster_entries.items.empty()) return false;
   if (m.spring_basis.modes > 0) return is_spring_basis(m);
   if (!m.spring_basis.fixed.empty()) return false;
   if (b.steps.size() > ModeBasis::kMaxModes || b.entries.size() != 3 * m.rest.size() * b.steps.size()) return false;

@@ -20,7 +20,7 @@ namespace tactus {
 
 namespace {
 
-constexpr std::uint8_t kKept = 1;  // bits of `promise`
+constexpr std::uint8_t kKept = 1;  // bits of `bound_flags`
 constexpr std::uint8_t kHaptic = 2;
 
 /// One walk over the record's elements to check, write and read them. `Coder` has number(v) and byte(v, limit), which return the
@@ -33,7 +33,7 @@ void code_rigid(Coder& coder, RigidTriggers& t) {
   t.haptic = static_cast<HapticRule>(coder.byte(static_cast<std::uint8_t>(t.haptic), 4));
   const bool is_constant = t.haptic == HapticRule::isotropic || t.haptic == HapticRule::cone;
   if (is_constant) t.weber_fraction = coder.number(t.weber_fraction);
-  if (t.haptic == HapticRule::perceptual) t.perceptual_share = coder.number(t.perceptual_share);
+  if (t.haptic == HapticRule::perceptual) t.perceptual_fraction = coder.number(t.perceptual_fraction);
   if (is_constant || t.haptic == HapticRule::perceptual) t.force_floor = coder.number(t.force_floor);
   if (t.haptic == HapticRule::cone) t.cone_angle = coder.number(t.cone_angle);
   if (t.haptic == HapticRule::fixed) {
@@ -45,8 +45,8 @@ void code_rigid(Coder& coder, RigidTriggers& t) {
 template <class Coder>
 void code_deformable(Coder& coder, DeformableBounds& mesh) {
   DeformableThresholds& t = mesh.thresholds;
-  const unsigned promise = (mesh.kept ? kKept : 0u) | (t.weber_fraction ? kHaptic : 0u);
-  const std::uint8_t told = coder.byte(static_cast<std::uint8_t>(promise), kKept | kHaptic);
+  const unsigned bound_flags = (mesh.kept ? kKept : 0u) | (t.weber_fraction ? kHaptic : 0u);
+  const std::uint8_t told = coder.byte(static_cast<std::uint8_t>(bound_flags), kKept | kHaptic);
   mesh.kept = (told & kKept) != 0;
   t.visual = coder.number(t.visual);
   if (!(told & kHaptic)) {

@@ -57,7 +57,7 @@ struct DrivenConstants {
     std::uint32_t hold = 0;                  ///< the same while the device holds the object; 0: it never does; ..kMost
     std::array<std::uint32_t, 3> inertia{};  ///< moments about the axes of its frame over its mass, x 2^-30 m^2; 1..kMost
     std::uint16_t friction = 0;              ///< of the proxy on it, x 2^-8
-    std::uint16_t damping = 0;               ///< share of its velocities that it loses per tick, x 2^-20
+    std::uint16_t damping = 0;               ///< fraction of its velocities that it loses per tick, x 2^-20
     friend bool operator==(const Body&, const Body&) = default;
   };
   std::vector<Body>
@@ -78,7 +78,7 @@ struct SceneSpec {
   GridExponents grid;
   std::uint16_t max_extrapolation = 2000;     ///< ticks; an object without updates stops moving after so long
   std::uint8_t baseline_span = 1;             ///< how many of the newest states a receiver keeps as baselines, 1..64
-  bool is_eased = false;                      ///< updates of rigid objects tell how clients pass over to them (rigid/easing.h)
+  bool is_smoothed = false;                      ///< updates of rigid objects tell how clients smooth their errors (rigid/curve.h)
   std::vector<RigidObject> objects;           ///< order is the wire order
   std::vector<DeformableObject> deformables;  ///< a stream without any spends no byte on them
   std::optional<LoadSpec> loads;              ///< of the objects that can move; none: a stream spends no byte on them

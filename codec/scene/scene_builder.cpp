@@ -31,7 +31,7 @@ void choose(DeformableCoding& coding, bool is_nearly_exact) noexcept {
   if (coding.weight_sets == 0) coding.weight_sets = has_basis(coding) && !is_nearly_exact ? 2 : 1;
 }
 
-/// The share that fades per frame, from that per second.
+/// The fraction that fades per frame, from that per second.
 std::uint16_t fade_of(const DeformableCoding& coding, std::uint32_t tick_rate) noexcept {
   if (!has_basis(coding)) return 0;
   const double left = std::pow(1 - *coding.fade, coding.frame_period / tick_rate);
@@ -117,11 +117,11 @@ Result<ElasticBody> on_grid(ElasticPhysics physics, unsigned position_exp) {
 }
 
 /// Not those of people who type 4 for 4 %.
-template <class Promise>
-bool are_fractions(const Promise& promise) noexcept {
+template <class Bounds>
+bool are_fractions(const Bounds& bounds) noexcept {
   const auto fits = [](double p) { return p >= 0 && p <= 1; };  // false for NaN
-  return fits(promise.rigid.weber_fraction) && fits(promise.rigid.perceptual_share) &&
-         fits(promise.deformables.weber_fraction.value_or(0)) && fits(promise.loads.weber_fraction);
+  return fits(bounds.rigid.weber_fraction) && fits(bounds.rigid.perceptual_fraction) &&
+         fits(bounds.deformables.weber_fraction.value_or(0)) && fits(bounds.loads.weber_fraction);
 }
 
 /// A number for people.
@@ -145,7 +145,7 @@ std::optional<GridExponents> grid_for(double metres, GridExponents grid) noexcep
   return grid;
 }
 
-/// The finest bound of a distance [m] that is promised; 0: none.
+/// The finest bound of a distance [m] that is declared; 0: none.
 double finest_bound(const RigidTriggers& rigid, const DeformableThresholds& mesh, bool has_rigid, bool has_meshes) noexcept {
   double out = has_rigid ? rigid.visual_position : 0;
   if (has_rigid && rigid.haptic == HapticRule::fixed) out = std::min(out, rigid.fixed_position);
@@ -286,9 +286,9 @@ bool SceneBuilder::steps_stably(const ElasticPhysics& physics, std::span<const V
   return is_stable(physics.body, rest, step);
 }
 
-SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const DeformableThresholds& deformables,
-                                    const LoadThresholds& loads) {
-  promise_ = {rigid, deformables, loads};
+SceneBuilder& SceneBuilder::declare_bounds(const RigidTriggers& rigid, const DeformableThresholds& deformables,
+                                           const LoadThresholds& loads) {
+  declared_bounds_ = {rigid, deformables, loads};
   return *this;
 }
 
@@ -311,8 +311,9 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
                     "a world of " + figure(metres) + " m: it is above 0 m and below " + figure(reach_of(kCoarsestGrid)) + " m");
     spec.grid = *grid;
     const bool moves = std::ranges::any_of(taken.rigid_, [](const Rigid& object) { return object.dof != Dof::none; });
-    const double bound =
-        taken.promise_ ? finest_bound(taken.promise_->rigid, taken.promise_->deformables, moves, !taken.deformables_.empty()) : 0;
+    const double bound = taken.declared_bounds_ ? finest_bound(taken.declared_bounds_->rigid, taken.declared_bounds_->deformables,
+                                                               moves, !taken.deformables_.empty())
+                                                : 0;
     if (bound > 0 && bound < std::ldexp(kSteps, -static_cast<int>(spec.grid.position)))
       return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {}, too_large(metres, bound));
   }
@@ -341,11 +342,12 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
     if (made.dof == Dof::none) continue;
     spec.motion = *constants;
     spec.interest = *interest;
-    spec.is_eased = taken.rigid_profile_ == RigidProfile::main;
+    spec.is_smoothed = taken.rigid_profile_ == RigidProfile::main;
   }
-  if (taken.promise_ && !are_fractions(*taken.promise_)) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});
+  if (taken.declared_bounds_ && !are_fractions(*taken.declared_bounds_))
+    return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});
   if (spec.driven) spec.driven->bodies.resize(spec.objects.size());
-  const bool is_nearly_exact = taken.promise_ && taken.promise_->deformables.visual <= kNearlyExact;
+  const bool is_nearly_exact = taken.declared_bounds_ && taken.declared_bounds_->deformables.visual <= kNearlyExact;
   for (Deformable& of : taken.deformables_) {
     auto object = taken.meshes_->make(of, spec, is_nearly_exact);
     if (!object) return refuse(object.error(), of.name);
@@ -353,7 +355,9 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
     if (const RuleName rule = taken.meshes_->support->broken_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
     spec.deformables.push_back(std::move(*object));
   }
-  if (taken.promise_) spec.bounds = bounds_of(spec, taken.promise_->rigid, taken.promise_->deformables, taken.promise_->loads);
+  if (taken.declared_bounds_)
+    spec.bounds =
+        bounds_of(spec, taken.declared_bounds_->rigid, taken.declared_bounds_->deformables, taken.declared_bounds_->loads);
   const Counts counts = counts_of(spec);
   auto scene = Scene::create(std::move(spec), taken.meshes_ ? taken.meshes_->support : nullptr, limits);
   if (scene) return *scene;

@@ -17,7 +17,7 @@ namespace tactus {
 /// How rigid objects are coded. What is declared of it decides how a sender codes, and what clients show.
 enum class RigidProfile : std::uint8_t {
   thesis,  ///< linear dead reckoning from true velocities; clients jump to an update, or smooth what they show (Interpolation)
-  main,  ///< updates tell velocities that lean towards the acceleration, to last longer, and how clients pass over to them: what is
+  main,  ///< updates tell look-ahead velocities, to last longer, and how clients pass over to them: what is
          ///< shown and felt does not jump, and the bounds hold on the way
 };
 
@@ -29,8 +29,8 @@ struct DeformableCoding {
   bool models_kept = false;     ///< thesis: entropy models are part of the state
   double frame_period = 1;      ///< main: [ticks] from shape to shape, > 0
   bool layered = false;         ///< main: separate packets for the haptic and the visual layer
-  /// main, with a basis: share of what corrections added to it that fades per second, 0..1; none: 0.98, or 0 where nearly every vertex
-  /// is coded in every packet, as for a promised visual bound of 0.01 mm and less
+  /// main, with a basis: fraction of what corrections added to it that fades per second, 0..1; none: 0.98, or 0 where nearly every vertex
+  /// is coded in every packet, as for a declared visual bound of 0.01 mm and less
   std::optional<double> fade{};
   /// main: sets of the parents' weights that packets may name (DeformableObject); 0: the second alone with a basis, else the first, and
   /// the first for such a bound
@@ -86,7 +86,7 @@ class SceneBuilder {
   /// The grids as they are; those of GridExponents by themselves, whose positions reach +-512 m.
   SceneBuilder& grid(const GridExponents& exponents);
   /// How far from the origin positions get, along any axis [m]. build() takes the finest grid of positions that reaches so far, and none finer
-  /// than grid() says; it refuses a world that is too large for the bounds of promise(), with both figures.
+  /// than grid() says; it refuses a world that is too large for the bounds of declare_bounds(), with both figures.
   SceneBuilder& world_size(double metres);
   /// An object without updates stops moving after so long [s].
   SceneBuilder& extrapolate(double seconds);
@@ -145,12 +145,12 @@ class SceneBuilder {
   static const MeshParts kMeshParts;
   const MeshParts* meshes_ = nullptr;  // what deformable() needs: a program that never calls it does not link that
   bool is_of_nothing_ = false;         // driven() or elastic() came before any such object
-  struct Promise {
+  struct DeclaredBounds {
     RigidTriggers rigid;
     DeformableThresholds deformables;
     LoadThresholds loads;
   };
-  std::optional<Promise> promise_;
+  std::optional<DeclaredBounds> declared_bounds_;
 };
 
 /// The scene of a device that moves in `scene`, one rigid object; its orientation is coded, too. spec/65-signal.md section 2

@@ -19,7 +19,7 @@ constexpr std::array<std::uint8_t, 4> kMagic{0x89, 'T', 'C', 'T'};
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kRigid = 1;
 constexpr std::uint8_t kProfile = 0;
-constexpr std::uint16_t kHasDeformables = 1, kHasLoads = 2, kIsEased = 4, kHasMotion = 8, kIsDriven = 16, kIsElastic = 32,
+constexpr std::uint16_t kHasDeformables = 1, kHasLoads = 2, kIsSmoothed = 4, kHasMotion = 8, kIsDriven = 16, kIsElastic = 32,
                         kHasInterest = 64;  // flags
 constexpr std::size_t kFixedSize = 12;      // magic, version, profile, flags, body_size
 
@@ -129,7 +129,7 @@ void write_driven(ByteWriter& b, const Scene& scene) {
 
 Result<SceneSpec> parse_body(ByteReader body, std::uint16_t flags, const DecodeLimits& limits) {
   SceneSpec spec;
-  spec.is_eased = (flags & kIsEased) != 0;
+  spec.is_smoothed = (flags & kIsSmoothed) != 0;
   const std::uint64_t start = body.bit_offset();
   spec.tick_rate = body.u32();
   spec.grid.position = body.u8();
@@ -212,7 +212,7 @@ Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
   w.u8(kVersion);
   w.u8(kProfile);
   w.u16(static_cast<std::uint16_t>((scene.deformables.empty() ? 0 : kHasDeformables) | (scene.loads ? kHasLoads : 0) |
-                                   (scene.is_eased ? kIsEased : 0) | (scene.motion ? kHasMotion : 0) |
+                                   (scene.is_smoothed ? kIsSmoothed : 0) | (scene.motion ? kHasMotion : 0) |
                                    (scene.driven ? kIsDriven : 0) | (has_elastic_body(scene.deformables) ? kIsElastic : 0) |
                                    (scene.interest ? kHasInterest : 0)));
   w.u32(static_cast<std::uint32_t>(body.size()));
@@ -236,7 +236,7 @@ Result<ParsedScene> parse_scene(std::span<const std::uint8_t> bytes, const Decod
   if (version != kVersion) return fail(Errc::unsupported, "R-STR-2", 32);
   if (profile > kProfile + 1) return fail(Errc::malformed, "R-STR-3", 40);
   if (profile != kProfile) return fail(Errc::unsupported, "R-STR-3", 40);
-  constexpr std::uint16_t kAll = kHasDeformables | kHasLoads | kIsEased | kHasMotion | kIsDriven | kIsElastic | kHasInterest;
+  constexpr std::uint16_t kAll = kHasDeformables | kHasLoads | kIsSmoothed | kHasMotion | kIsDriven | kIsElastic | kHasInterest;
   if (flags > kAll) return fail(Errc::malformed, "R-STR-4", 48);
   if (body_size > limits.header_bytes) return fail(Errc::limit_exceeded, "R-STR-14", 64);
   ByteReader body = in.sub(body_size);

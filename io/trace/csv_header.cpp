@@ -62,8 +62,8 @@ char separator_of_values(std::string_view text) {
   double most = -1;
   for (const char separator : kCsvSeparators) {
     const Values values = count_values(split(text, separator));
-    const double share = static_cast<double>(values.numbers + values.missing) / static_cast<double>(values.fields);
-    const double score = values.numbers == 0 ? 0 : share + (values.fields > 1 ? 1e-3 : 0);
+    const double fraction = static_cast<double>(values.numbers + values.missing) / static_cast<double>(values.fields);
+    const double score = values.numbers == 0 ? 0 : fraction + (values.fields > 1 ? 1e-3 : 0);
     if (score > most + 1e-9) best = separator, most = score;
   }
   return best;

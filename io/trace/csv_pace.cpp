@@ -29,7 +29,7 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-/// 1000 for 998.7: the roundest number as near as `tolerance` (a share), else the next whole one.
+/// 1000 for 998.7: the roundest number as near as `tolerance` (a fraction), else the next whole one.
 std::uint32_t round_rate(double rate, double tolerance) {
   for (int digits = static_cast<int>(std::log10(std::max(rate, 1.0))); digits >= 0; --digits) {
     const double step = std::pow(10, digits);
@@ -69,7 +69,7 @@ class PaceFinder {
   std::vector<const CsvRow*> rows_;  // of the object that has most
   std::vector<Gap> gaps_;            // 0 or longer
   double mean_ = 0, pause_ = 0;      // [s] gaps without pauses; what is a pause between groups
-  double uncertain_ = 0;             // share of the rate of groups
+  double uncertain_ = 0;             // fraction of the rate of groups
   CsvPace pace_;
 };
 
@@ -168,11 +168,11 @@ bool PaceFinder::find_groups() {
     if (gap.seconds <= pause_) length += gap.seconds, ++count;
   if (length == 0) return false;
   mean_ = length / count;
-  const auto share_below = [&](double seconds) {
+  const auto fraction_below = [&](double seconds) {
     const auto below = std::ranges::count_if(gaps_, [&](const Gap& gap) { return gap.seconds < seconds; });
     return static_cast<double>(below) / static_cast<double>(gaps_.size());
   };
-  if (share_below(kAlike * mean_) < 0.03 && share_below(kTogether * mean_) < 0.2) return false;  // a few times that repeat
+  if (fraction_below(kAlike * mean_) < 0.03 && fraction_below(kTogether * mean_) < 0.2) return false;  // a few times that repeat
   if (!are_samples()) return false;
   count_groups();
   return pace_.period > 0;

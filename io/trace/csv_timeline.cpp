@@ -358,8 +358,8 @@ void CsvTimeline::check_angular_velocity(const TraceFrame& frame) {
   const bool is_body = mapping_.angular_velocity_frame == AngularVelocityFrame::body;
   const Quat& q = sample.pose.rotation;
   AngularVelocityCheck& check = done_.angular_velocity;
-  const auto take = [share = 1.0 / static_cast<double>(++check.rows)](double& mean, double value) {
-    mean += share * (value - mean);
+  const auto take = [fraction = 1.0 / static_cast<double>(++check.rows)](double& mean, double value) {
+    mean += fraction * (value - mean);
   };
   take(check.given, norm(given));
   take(check.off, norm(seen - given));

@@ -213,8 +213,8 @@ Vec3 in_single_precision(const Vec3& v) {
           static_cast<double>(static_cast<float>(v.z))};
 }
 
-Colour mixed(const Colour& a, const Colour& b, double share) {
-  return {a.r + share * (b.r - a.r), a.g + share * (b.g - a.g), a.b + share * (b.b - a.b), 1};
+Colour mixed(const Colour& a, const Colour& b, double fraction) {
+  return {a.r + fraction * (b.r - a.r), a.g + fraction * (b.g - a.g), a.b + fraction * (b.b - a.b), 1};
 }
 
 Entity entity_of(const std::string& frame, const FoxgloveShape* shape) {

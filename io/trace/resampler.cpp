@@ -11,15 +11,15 @@ namespace tactus {
 
 namespace {
 
-UserSample mixed(const UserSample& a, const UserSample& b, double share) {
+UserSample mixed(const UserSample& a, const UserSample& b, double fraction) {
   UserSample out = a;
-  out.device.position = mixed(a.device.position, b.device.position, share);
-  out.device.orientation = mixed(a.device.orientation, b.device.orientation, share);
-  out.device.velocity = mixed(a.device.velocity, b.device.velocity, share);
-  out.device.time = a.device.time + std::llround(share * static_cast<double>(b.device.time - a.device.time));
+  out.device.position = mixed(a.device.position, b.device.position, fraction);
+  out.device.orientation = mixed(a.device.orientation, b.device.orientation, fraction);
+  out.device.velocity = mixed(a.device.velocity, b.device.velocity, fraction);
+  out.device.time = a.device.time + std::llround(fraction * static_cast<double>(b.device.time - a.device.time));
   out.contact.device = out.device.position;
-  out.force = mixed(a.force, b.force, share);
-  out.server_force = mixed(a.server_force, b.server_force, share);
+  out.force = mixed(a.force, b.force, fraction);
+  out.server_force = mixed(a.server_force, b.server_force, fraction);
   return out;
 }
 
@@ -77,15 +77,15 @@ bool Resampler::next(TraceFrame& frame) {
   return make(0, frame), true;
 }
 
-void Resampler::make(double share, TraceFrame& out) {
+void Resampler::make(double fraction, TraceFrame& out) {
   out.tick = tick_++;
   out.changed.reset();
   out.objects.resize(before_.objects.size());
   out.users.resize(before_.users.size());
   out.meshes.resize(before_.meshes.size());
-  for (std::size_t i = 0; i < out.objects.size(); ++i) out.objects[i] = mixed(before_.objects[i], after_.objects[i], share);
+  for (std::size_t i = 0; i < out.objects.size(); ++i) out.objects[i] = mixed(before_.objects[i], after_.objects[i], fraction);
   for (std::size_t i = 0; i < out.users.size(); ++i) {
-    out.users[i] = mixed(before_.users[i], after_.users[i], share);
+    out.users[i] = mixed(before_.users[i], after_.users[i], fraction);
     out.users[i].reports = std::exchange(reported_[i], {});
   }
   for (std::size_t i = 0; i < out.meshes.size(); ++i) {

@@ -39,7 +39,7 @@ class Resampler {
   double between(const Instant& from, const Instant& to) const noexcept;  // [s]
   std::int64_t first_at_or_after(const Instant& time) const noexcept;     // tick of the new trace
   void note_news();
-  void make(double share, TraceFrame& out);
+  void make(double fraction, TraceFrame& out);
 
   TraceInfo info_;
   std::uint32_t from_rate_;

@@ -34,8 +34,8 @@ struct SampleCurve {
     Vec3 chord, bend;  // v, b, of positions or of angular velocities
     Vec3 mean;         // (u + 2v + w)/4
     bool is_noise = false;
-    Vec3 velocity(double h, double share) const noexcept { return is_noise ? mean : chord + ((share - 0.5) * h) * bend; }
-    Vec3 off(double h, double share) const noexcept { return (-0.5 * h * h * share * (1 - share)) * bend; }
+    Vec3 velocity(double h, double fraction) const noexcept { return is_noise ? mean : chord + ((fraction - 0.5) * h) * bend; }
+    Vec3 off(double h, double fraction) const noexcept { return (-0.5 * h * h * fraction * (1 - fraction)) * bend; }
   };
   Part linear, angular;
   double span = 0;  ///< h
@@ -137,7 +137,7 @@ class SampleTrack {
   std::size_t at_ = 0;  // the last one not behind the time, or the first
   Time time_{};
   Place place_ = Place::nowhere;
-  double share_ = 0;
+  double fraction_ = 0;
   bool has_slopes_ = false, has_curve_ = false;
   Twist from_, to_;
   SampleCurve curve_;
@@ -148,14 +148,14 @@ void SampleTrack<Time>::move_to(const Time& time) {
   time_ = time;
   while (at_ + 1 < samples_.size() && since(samples_[at_ + 1].at, time) <= limits_.same) ++at_, has_slopes_ = has_curve_ = false;
   while (at_ > 1 && 2 * since(samples_[at_].at, samples_[1].at) >= limits_.tick) samples_.pop_front(), --at_;
-  share_ = 0;
+  fraction_ = 0;
   place_ = Place::nowhere;
   if (samples_.empty()) return;
   const double past = since(time, samples_[at_].at);
   if (std::abs(past) <= limits_.same) place_ = Place::on;
   else if (past < 0) place_ = Place::before;
   else if (at_ + 1 == samples_.size() || !are_joined(at_, at_ + 1)) place_ = Place::after;
-  else place_ = Place::between, share_ = past / span();
+  else place_ = Place::between, fraction_ = past / span();
 }
 
 template <class Time>
@@ -167,7 +167,7 @@ bool SampleTrack<Time>::is_near(double most) const noexcept {
 
 template <class Time>
 RigidSample SampleTrack<Time>::value() const noexcept {
-  if (place_ == Place::between) return mixed(samples_[at_].value, samples_[at_ + 1].value, share_);
+  if (place_ == Place::between) return mixed(samples_[at_].value, samples_[at_ + 1].value, fraction_);
   RigidSample value = samples_[at_].value;
   if (place_ != Place::on) value.velocity = value.angular_velocity = {};
   return value;
@@ -178,8 +178,8 @@ Pose SampleTrack<Time>::pose() noexcept {
   Pose pose = value().pose;
   if (place_ != Place::between || !is_sparse(at_)) return pose;
   const SampleCurve& way = curve();
-  pose.position = pose.position + way.linear.off(way.span, share_);
-  if (way.angular.bend != Vec3{}) pose.rotation = rotation_of(way.angular.off(way.span, share_)) * pose.rotation;
+  pose.position = pose.position + way.linear.off(way.span, fraction_);
+  if (way.angular.bend != Vec3{}) pose.rotation = rotation_of(way.angular.off(way.span, fraction_)) * pose.rotation;
   return pose;
 }
 
@@ -189,8 +189,8 @@ RigidSample SampleTrack<Time>::moving(double seconds) noexcept {
   RigidSample value{pose(), {}, {}};
   if (is_sparse(at_)) {
     const SampleCurve& way = curve();
-    value.velocity = (1 / seconds) * way.linear.velocity(way.span, share_);
-    value.angular_velocity = (1 / seconds) * way.angular.velocity(way.span, share_);
+    value.velocity = (1 / seconds) * way.linear.velocity(way.span, fraction_);
+    value.angular_velocity = (1 / seconds) * way.angular.velocity(way.span, fraction_);
     return value;
   }
   if (!has_slopes_) {
@@ -198,8 +198,8 @@ RigidSample SampleTrack<Time>::moving(double seconds) noexcept {
     to_ = at_ + 1 < samples_.size() ? slope(at_ + 1, seconds) : Twist{};
     has_slopes_ = true;
   }
-  value.velocity = mixed(from_.linear, to_.linear, share_);
-  value.angular_velocity = mixed(from_.angular, to_.angular, share_);
+  value.velocity = mixed(from_.linear, to_.linear, fraction_);
+  value.angular_velocity = mixed(from_.angular, to_.angular, fraction_);
   return value;
 }
 

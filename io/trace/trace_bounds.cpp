@@ -71,7 +71,7 @@ void pass_rigid(Entries& entries, RigidTriggers& t) {
   entries.rule("haptic", t.haptic);
   const bool is_constant = t.haptic == HapticRule::isotropic || t.haptic == HapticRule::cone;
   if (is_constant) entries.number("weber_fraction", t.weber_fraction);
-  if (t.haptic == HapticRule::perceptual) entries.number("perceptual_share", t.perceptual_share);
+  if (t.haptic == HapticRule::perceptual) entries.number("perceptual_fraction", t.perceptual_fraction);
   if (is_constant || t.haptic == HapticRule::perceptual) entries.number("force_floor", t.force_floor);
   if (t.haptic == HapticRule::cone) entries.number("cone_angle", t.cone_angle);
   if (t.haptic == HapticRule::fixed) {

@@ -2,7 +2,7 @@
 /// Bounds of a stream as the metadata record "tactus_bounds" of a trace: one entry per number, named as in StreamBounds.
 ///   position_exp                                                        always
 ///   heartbeat, visual_position, visual_rotation, haptic                 if the stream had a rigid object that moves
-///   weber_fraction, perceptual_share, force_floor, cone_angle, fixed_position, fixed_rotation   those that `haptic` uses:
+///   weber_fraction, perceptual_fraction, force_floor, cone_angle, fixed_position, fixed_rotation   those that `haptic` uses:
 ///                                                                       off, isotropic, cone, fixed or perceptual
 ///   meshes/I/visual, meshes/I/kept, meshes/I/rings                      for mesh I = 0, 1, ..; kept is 0 or 1
 ///   meshes/I/weber_fraction, meshes/I/depth_floor                       if it has a haptic bound

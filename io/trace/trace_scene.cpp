@@ -45,7 +45,7 @@ Result<SceneBuilder> scene_builder(const TraceInfo& info, const TraceFrame& firs
 Result<SceneBuilder> scene_builder(const TraceInfo& info, const TraceFrame& first, const TraceCoding& coding,
                                    const SenderOptions& sender) {
   TACTUS_TRY(SceneBuilder scene, scene_builder(info, first, coding));
-  scene.promise(sender.triggers, sender.deformable.thresholds, sender.load);
+  scene.declare_bounds(sender.triggers, sender.deformable.thresholds, sender.load);
   return scene;
 }
 

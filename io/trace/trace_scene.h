@@ -40,7 +40,7 @@ Result<void> add_deformable(SceneBuilder& scene, const TraceDeformable& mesh, co
 /// err  invalid_argument R-API-5 wrong count; those of a basis
 Result<SceneBuilder> scene_builder(const TraceInfo& info, const TraceFrame& first, const TraceCoding& coding = {});
 
-/// The same for a sender of these options: it promises the bounds that the sender keeps, on which its coding may depend.
+/// The same for a sender of these options: it declares the bounds that the sender keeps, on which its coding may depend.
 Result<SceneBuilder> scene_builder(const TraceInfo& info, const TraceFrame& first, const TraceCoding& coding,
                                    const SenderOptions& sender);
 

@@ -17,7 +17,7 @@ HEAD = ["motion", "group", "case", "ticks", "over", "over_position", "over_rotat
         "up_bit_per_s", "recovery_s", "bounds_widest", "bounds_widened_s", "wrong_states", "error_median_bounds",
         "error_p95_bounds", "error_worst_bounds"]
 # Options of `tactus encode`, handed on as they are typed.
-VALUES = ["-p/--deadband", "--visual", "--fixed", "--length-unit", "--haptic", "--alpha", "--jnd-share", "--force-floor",
+VALUES = ["-p/--deadband", "--visual", "--fixed", "--length-unit", "--haptic", "--alpha", "--jnd-fraction", "--force-floor",
           "--heartbeat",
           "--key-interval", "--deformable-visual", "--rings", "--basis", "--visual-share", "--haptic-share", "--profile",
           "--fade", "--nugget"]
@@ -117,8 +117,8 @@ def remarks(case):
     out = f"; mended {1e3 * case['recovery_s']:.0f} ms after it" if case.get("recovery_s") else ""
     widened = case["bounds_widened"]
     if widened["for_s"] > 0:
-        share = 100 * per(widened["for_s"], case["seconds"])
-        out += f"; bounds up to {widened['widest']:.1f} times as wide for {share:.0f} % of the time"
+        fraction = 100 * per(widened["for_s"], case["seconds"])
+        out += f"; bounds up to {widened['widest']:.1f} times as wide for {fraction:.0f} % of the time"
     return out
 
 
@@ -152,11 +152,11 @@ def markdown(motions, options, drawn):
            f"build), seed {options.seed}. All but the times is deterministic.\n\n"
            "A client looks on over the network of each row: round trip 40 ms and 5 % duplicates unless said, the same network "
            "up and down. "
-           "What it shows is judged against the truth of the tick that it shows. *Over a bound*: share of the ticks in which a "
+           "What it shows is judged against the truth of the tick that it shows. *Over a bound*: fraction of the ticks in which a "
            "position, "
            "rotation, contact force or vertex is off by more than its bound as given, however wide it was at the time (of "
            "deformable "
-           "objects without rigid ones, share of the ticks with a new shape); *longest*, *mean*: runs of such ticks; *shown "
+           "objects without rigid ones, fraction of the ticks with a new shape); *longest*, *mean*: runs of such ticks; *shown "
            "behind*: how "
            "far the tick shown lies behind the server's, delay of the network included. *x chain*: the payload as a multiple of "
            "that of "
@@ -164,7 +164,7 @@ def markdown(motions, options, drawn):
            "hashes of "
            f"states that the clients told, {wrong} were not those of the server.\n")
     if drawn:
-        out += "\n![share of ticks over a bound, over loss](session-loss.svg)\n"
+        out += "\n![fraction of ticks over a bound, over loss](session-loss.svg)\n"
     for motion in motions:
         coding = max((case["coding_cpu_s"] for case in motion["results"]), default=0)
         out += (f"\n## {motion['name']}\n\n{motion['ticks']} ticks at {motion['tick_rate_hz']:g} Hz; chain "
@@ -178,7 +178,7 @@ def markdown(motions, options, drawn):
 
 
 def draw(motion):
-    """Share of the ticks over a bound, over the loss, a line for each kind of loss."""
+    """Fraction of the ticks over a bound, over the loss, a line for each kind of loss."""
     fig, (axes,) = figure.panels()
     for number, (group, label) in enumerate(LOSSES):
         points = [(100 * case["loss"], 100 * over(case)) for case in motion["results"] if case["group"] == group]

@@ -8,7 +8,7 @@ from studies.report import per, significant
 
 TITLES = {"device": "position within", "contact": "force in contact and position within", "force": "force within"}
 HEAD = ("recording,user,signal,within,samples,seconds,packets,payload_bytes,"
-        "largest_error,rms_error,share_of_permitted,samples_over")
+        "largest_error,rms_error,fraction_of_permitted,samples_over")
 
 
 def parser(what):
@@ -54,7 +54,7 @@ def cells(recording, signal):
     scale, seconds = 1 if signal["signal"] == "force" else 1e3, recording["seconds"]
     return [signal["within"], f"{per(signal['packets'], seconds):.1f}", f"{8e-3 * per(signal['bytes'], seconds):.2f}",
             significant(scale * signal["largest_error"]), significant(scale * signal["rms_error"]),
-            f"{signal['share_of_permitted']:.3f}",
+            f"{signal['fraction_of_permitted']:.3f}",
             str(signal["samples_over"]), report.duration(signal["time_per_sample_s"])]
 
 
@@ -70,7 +70,7 @@ def tables(recording):
 
 def csv_rows(recordings):
     return [[r["name"], s["user"], s["signal"], s["within"], s["samples"], f"{r['seconds']:.6g}", s["packets"], s["bytes"],
-             f"{s['largest_error']:.6g}", f"{s['rms_error']:.6g}", f"{s['share_of_permitted']:.6g}", s["samples_over"]]
+             f"{s['largest_error']:.6g}", f"{s['rms_error']:.6g}", f"{s['fraction_of_permitted']:.6g}", s["samples_over"]]
             for r in recordings for s in r["signals"]]
 
 
@@ -79,7 +79,7 @@ def as_json(recordings):
         seconds = recording["seconds"]
         return {key: signal[key] for key in ("user", "signal", "within", "samples")} | {
             "packets_per_s": per(signal["packets"], seconds), "payload_bit_per_s": 8 * per(signal["bytes"], seconds)} | {
-            key: signal[key] for key in ("largest_error", "rms_error", "share_of_permitted", "samples_over", "time_per_sample_s")}
+            key: signal[key] for key in ("largest_error", "rms_error", "fraction_of_permitted", "samples_over", "time_per_sample_s")}
     return {"schema": "tactus.signals/1", "context": report.context(), "recordings": [
         {"name": r["name"], "tick_rate_hz": r["tick_rate_hz"], "seconds": r["seconds"], "rows": [row(r, s) for s in r["signals"]]}
         for r in recordings]}
@@ -94,7 +94,7 @@ def markdown(recordings):
            f"loses nothing; "
            f"devices are acknowledged {1e3 * recordings[0]['round_trip_s']:.0f} ms later. What the other end shows is compared "
            f"with the "
-           "sample at once. *Of the permitted*: the largest error as a share of what is permitted at that sample; *samples "
+           "sample at once. *Of the permitted*: the largest error as a fraction of what is permitted at that sample; *samples "
            "over*: those off "
            "by more; *every sample*: each is sent, and the grid is what is permitted; *time per sample*: at the sender, median. "
            "The same "

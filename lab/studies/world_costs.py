@@ -18,7 +18,7 @@ except ImportError:
     numpy = None  # who needs it asks needs_numpy()
 
 LODS, OUT, HYSTERESIS = 7, 7, 1.15  # levels of detail 0 to 6, out of interest: spec/44-interest.md sections 1 and 3
-# CPU [us] per tick of 1 ms; bits with the session's share and without UDP and IPv4; from full interest to the widest bounds.
+# CPU [us] per tick of 1 ms; bits with those of the session and without UDP and IPv4; from full interest to the widest bounds.
 COSTS = {
     "session_us": 0.48, "truth_us": 0.044, "truth_of_1000_us": 0.00099, "look_us": 0.0022, "tell_us": 0.15, "packet_us": 26.0,
     "packet_of_1000_us": 0.89, "physics_us": 2.9, "memory_byte": 800.0, "idle_bit_per_s": 1800.0, "idle_datagrams_per_s": 10.0,

@@ -26,7 +26,7 @@ class Setting:
     seconds: float = 10
     hot_spots: int = 20    # where 80 % of users and half of the objects are, 12 m around each
     stirred: int = 8       # objects within 1 m that a user keeps moving, at most
-    restless: float = 0.005  # share of objects that move without a user
+    restless: float = 0.005  # fraction of objects that move without a user
     margin: float = 1      # [m] beyond a border before what crosses it changes its owner
     uneven: float = 1.3    # regions are split anew when the fullest server has so many times the mean load
 
@@ -95,11 +95,11 @@ class World:
         self.regions = Regions(setting, self.users, numpy.ones(setting.users))
         self.owner, self.server = self.regions.of(self.objects), self.regions.of(self.users)
 
-    def _places(self, count, share):
-        """Of `share` of them around hot spots, else anywhere."""
+    def _places(self, count, fraction):
+        """Of `fraction` of them around hot spots, else anywhere."""
         side = self.setting.side
         out = self.random.uniform(0, side, (count, 2))
-        near = self.random.uniform(size=count) < share
+        near = self.random.uniform(size=count) < fraction
         out[near] = self.spots[self.random.integers(len(self.spots), size=near.sum())] + self.random.normal(0, 12, (near.sum(), 2))
         return numpy.clip(out, 0, side * (1 - 1e-9))
 

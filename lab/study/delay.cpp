@@ -69,9 +69,9 @@ tl::expected<DelayRun, Diagnostic> run_delayed(const Scene& scene, const DelayCa
   return out;
 }
 
-double quantile(std::vector<double>& values, double share) {
+double quantile(std::vector<double>& values, double fraction) {
   if (values.empty()) return NAN;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, at);
   return *at;
 }

@@ -49,13 +49,13 @@ tl::expected<DelayRun, Diagnostic> run_delayed(const Scene& scene, const DelayCa
 struct DelayEffect {
   double mean = 0, reference_mean = 0;  ///< [N] over the contact of either
   double peak = 0, reference_peak = 0;  ///< [N] 99th percentile of it
-  double outside = 0;                   ///< share of the reference's contact in which the force is more than `weber` off
+  double outside = 0;                   ///< fraction of the reference's contact in which the force is more than `weber` off
   double rms = 0;                       ///< RMS of the error over RMS of the reference; nan: there is no reference
   double lowest_energy = 0;             ///< [J] least of the run
 };
 
-/// The value that a share of them does not exceed; nan: there are none.   in  values  put into another order
-double quantile(std::vector<double>& values, double share);
+/// The value that a fraction of them does not exceed; nan: there are none.   in  values  put into another order
+double quantile(std::vector<double>& values, double fraction);
 
 /// pre  of the same scene and length
 DelayEffect effect_of(const std::vector<DelayTick>& delayed, const std::vector<DelayTick>& reference, double weber);

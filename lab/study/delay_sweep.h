@@ -34,7 +34,7 @@ struct DelayPoint {
 struct DelayNumbers {
   // Hands that feel the force, against the same hand without delay.
   float mean = 0, peak = 0;  ///< of the force, over that without delay: 0.1 is 10 % more
-  float outside = 0;         ///< share of the contact in which it is more than 10 % off
+  float outside = 0;         ///< fraction of the contact in which it is more than 10 % off
   float energy = 0;          ///< [J] least that the device has put in
   // The devices of the run without delay, played back: the same motion.
   float force_error = 0;  ///< RMS of the error over RMS of the force

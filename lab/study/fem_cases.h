@@ -28,7 +28,7 @@ struct FemOutcome {
   std::string error;           ///< step, element, rule and remedy
   std::int64_t steps = 0;      ///< done
   std::size_t inverted = 0;    ///< tetrahedra inside out at the end
-  double energy = 0;           ///< kinetic and elastic at the end, as a share of the beginning
+  double energy = 0;           ///< kinetic and elastic at the end, as a fraction of the beginning
   std::size_t not_finite = 0;  ///< states with NaN or infinity that left a step
   bool kept_state = true;      ///< after an error the state is that before the step, bit by bit
   double farthest = 0;         ///< [m] largest displacement at the end

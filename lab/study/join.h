@@ -12,7 +12,7 @@ struct JoinCase {
   std::uint32_t side = 316;          ///< vertices of a square sheet: 316 make a declaration of 1.3 MB
   std::int64_t round_trip = 40'000;  ///< [us]
   double rate = 10e6;                ///< [bit/s] of the bottleneck that both clients share, headers included
-  double loss = 0;                   ///< share of datagrams, each way
+  double loss = 0;                   ///< fraction of datagrams, each way
   std::int64_t jitter = 0;           ///< [us] of every datagram, uniform within 0 and this
   std::int64_t queue = 100'000;      ///< [us] that the bottleneck holds
   std::uint64_t limit = 0;           ///< [bit/s] that the server's user states for each client; 0: none
@@ -26,7 +26,7 @@ struct JoinResult {
   double sent = 0;                ///< datagrams that the server sent for it, over those that it takes
   double longest_silence = 0;     ///< [s] without progress that the client could show
   double waits = 0, worst = 0;    ///< [s] longer than the fastest that datagrams to the live client took: 99 % of them, and all
-  double lost = 0;                ///< share of them that the bottleneck dropped
+  double lost = 0;                ///< fraction of them that the bottleneck dropped
 };
 
 /// err  of SessionServer::create, SessionClient::create, Link::create

@@ -9,8 +9,8 @@ namespace {
 constexpr std::uint32_t kAcross = 16, kAlong = 20;  // cells of the membrane
 
 Patch even_patch(std::vector<std::uint32_t> vertices) {
-  const double share = 1 / static_cast<double>(vertices.size());
-  std::vector<double> weights(vertices.size(), share);
+  const double weight = 1 / static_cast<double>(vertices.size());
+  std::vector<double> weights(vertices.size(), weight);
   return {std::move(vertices), std::move(weights)};
 }
 

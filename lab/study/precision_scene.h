@@ -19,7 +19,7 @@
 
 namespace tactus::sim::study {
 
-/// Vertices that share a load, and their shares; the same shares average their displacement, so load and displacement do work on
+/// Vertices that share a load, and their weights; the same weights average their displacement, so load and displacement do work on
 /// each other.
 struct Patch {
   std::vector<std::uint32_t> vertices;

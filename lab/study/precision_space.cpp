@@ -18,20 +18,20 @@ constexpr double kNear = 1e-9;  // [m] coordinates of grid vertices carry roundi
 template <class Region>
 Patch pressure_patch(const TetMesh& mesh, Region&& inside) {
   const TetSurface skin = surface(mesh);
-  std::vector<double> share(mesh.vertices.size(), 0);
+  std::vector<double> lumped(mesh.vertices.size(), 0);
   double area = 0;
   for (const Triangle& t : skin.mesh.triangles) {
     const Vec3 &a = skin.mesh.vertices[t[0]], &b = skin.mesh.vertices[t[1]], &c = skin.mesh.vertices[t[2]];
     if (!inside(a) || !inside(b) || !inside(c)) continue;
     const double third = norm(cross(b - a, c - a)) / 6;
-    for (const std::uint32_t v : t) share[skin.vertex[v]] += third;
+    for (const std::uint32_t v : t) lumped[skin.vertex[v]] += third;
     area += 3 * third;
   }
   Patch patch;
-  for (std::uint32_t v = 0; v < share.size(); ++v) {
-    if (share[v] == 0) continue;
+  for (std::uint32_t v = 0; v < lumped.size(); ++v) {
+    if (lumped[v] == 0) continue;
     patch.vertices.push_back(v);
-    patch.weights.push_back(share[v] / area);
+    patch.weights.push_back(lumped[v] / area);
   }
   return patch;
 }

@@ -70,13 +70,13 @@ class Mesh {
 using Gradients = Eigen::Matrix<double, kNodes, 3>;
 using Stiffness = Eigen::Matrix<double, 3 * kNodes, 3 * kNodes>;
 
-/// N = s (2 s - 1) at corners, 4 s_a s_b in middles, with the shares s of the corners.
-Gradients shape_gradients(const Eigen::Matrix<double, 4, 3>& of_shares, const Eigen::Vector4d& shares) {
+/// N = s (2 s - 1) at corners, 4 s_a s_b in middles, with the barycentric coordinates s.
+Gradients shape_gradients(const Eigen::Matrix<double, 4, 3>& of_barycentric, const Eigen::Vector4d& barycentric) {
   Gradients out;
-  for (int i = 0; i < 4; ++i) out.row(i) = (4 * shares[i] - 1) * of_shares.row(i);
+  for (int i = 0; i < 4; ++i) out.row(i) = (4 * barycentric[i] - 1) * of_barycentric.row(i);
   for (int i = 0; i < 6; ++i) {
     const auto [a, b] = kEdges[static_cast<std::size_t>(i)];
-    out.row(4 + i) = 4 * (shares[a] * of_shares.row(b) + shares[b] * of_shares.row(a));
+    out.row(4 + i) = 4 * (barycentric[a] * of_barycentric.row(b) + barycentric[b] * of_barycentric.row(a));
   }
   return out;
 }
@@ -90,12 +90,12 @@ Stiffness element_stiffness(const TetMesh& mesh, std::size_t tet, const Material
     const Vec3& p = mesh.vertices[mesh.tets[tet][static_cast<std::size_t>(i)]];
     corners.col(i) << 1, p.x, p.y, p.z;
   }
-  const Eigen::Matrix<double, 4, 3> of_shares = corners.inverse().rightCols<3>();
+  const Eigen::Matrix<double, 4, 3> of_barycentric = corners.inverse().rightCols<3>();
   Stiffness out = Stiffness::Zero();
   for (int point = 0; point < 4; ++point) {
-    Eigen::Vector4d shares = Eigen::Vector4d::Constant(0.1381966011250105);  // (5 - sqrt 5) / 20
-    shares[point] = 0.5854101966249685;
-    const Gradients g = shape_gradients(of_shares, shares);
+    Eigen::Vector4d barycentric = Eigen::Vector4d::Constant(0.1381966011250105);  // (5 - sqrt 5) / 20
+    barycentric[point] = 0.5854101966249685;
+    const Gradients g = shape_gradients(of_barycentric, barycentric);
     const double weight = volume(mesh, tet) / 4;
     for (Eigen::Index a = 0; a < kNodes; ++a) {
       for (Eigen::Index b = 0; b < kNodes; ++b) {

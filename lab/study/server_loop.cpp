@@ -14,8 +14,8 @@ constexpr std::uint32_t kPeriods = 20000;
 constexpr double kGrown = 1e6;  // times what the hands move
 constexpr double kSettled = 0.1;
 
-/// Share of the newest surface position in the mean force of a period.
-double newest_share(const ServerLoop& loop) noexcept {
+/// Weight of the newest surface position in the mean force of a period.
+double newest_weight(const ServerLoop& loop) noexcept {
   if (loop.approach == Approach::at_once || loop.decimator == Decimator::last) return 1;
   return (loop.divider + 1.0) / (2.0 * loop.divider);
 }
@@ -52,7 +52,7 @@ double measured_limit(const ServerLoop& loop) {
 }
 
 double spectral_radius(const ServerLoop& loop, double stiffness) noexcept {
-  const double period = loop.period(), newest = newest_share(loop), total = stiffness * loop.users;
+  const double period = loop.period(), newest = newest_weight(loop), total = stiffness * loop.users;
   const double inertia = loop.object.mass / (period * period), viscosity = loop.object.damping / period;
   const std::complex<double> a = inertia + viscosity + loop.object.stiffness;
   const std::complex<double> b = -2 * inertia - viscosity + newest * total, c = inertia + (1 - newest) * total;
@@ -61,7 +61,7 @@ double spectral_radius(const ServerLoop& loop, double stiffness) noexcept {
 }
 
 double jury_limit(const ServerLoop& loop) noexcept {
-  const double newest = newest_share(loop), all = critical_stiffness(loop.object, loop.period());
+  const double newest = newest_weight(loop), all = critical_stiffness(loop.object, loop.period());
   if (newest == 1) return all / loop.users;
   const double other = (loop.object.stiffness + loop.object.damping / loop.period()) / (1 - newest);
   return std::min(other, all / (2 * newest - 1)) / loop.users;

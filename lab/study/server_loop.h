@@ -34,7 +34,7 @@ double measured_limit(const ServerLoop& loop);
 /// Largest magnitude of the closed loop's poles: eq. 4.36, with the model's linear approach to a new surface where that is chosen.
 double spectral_radius(const ServerLoop& loop, double stiffness) noexcept;
 
-/// Largest k_s per user [N/m] by Jury's criterion. With a linear approach, the mean of the forces uses a share
+/// Largest k_s per user [N/m] by Jury's criterion. With a linear approach, the mean of the forces has a weight
 /// a = (N+1)/(2N) of the new surface and 1-a of the one before, and Jury's criterion yields
 ///   min( (k_o + b_o/T_n) / (1-a),  N (k_o + 2 b_o/T_n + 4 m_o/T_n^2) )
 double jury_limit(const ServerLoop& loop) noexcept;

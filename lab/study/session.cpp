@@ -29,15 +29,15 @@ double cpu_now() noexcept {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+std::string percent(double fraction) { return std::to_string(std::lround(100 * fraction)) + " %"; }
 std::string milliseconds(Microseconds time) { return std::to_string(time / 1000) + " ms"; }
 
 std::string kilobits(std::uint64_t rate) { return std::to_string(rate / 1000) + " kbit/s"; }
 
-/// in  share  0 to 1
-double quantile(std::vector<double>& values, double share) {
+/// in  fraction  0 to 1
+double quantile(std::vector<double>& values, double fraction) {
   if (values.empty()) return 0;
-  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+  const auto at = static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(at));
   return values[at];
 }
@@ -296,11 +296,11 @@ std::vector<SessionCase> session_cases(bool brief, std::uint64_t seed) {
   }
   std::ranges::stable_sort(out.end() - 6, out.end(), std::ranges::greater{}, &SessionCase::group);
   constexpr std::array kOfChain{3.0, 2.0, 1.5, 1.1};
-  for (const double share : kOfChain) {
-    out.push_back({.group = "rate at most, of the chain", .name = percent(share), .link = plain, .limit_of_chain = share});
+  for (const double fraction : kOfChain) {
+    out.push_back({.group = "rate at most, of the chain", .name = percent(fraction), .link = plain, .limit_of_chain = fraction});
   }
-  for (const double share : kOfChain)
-    out.push_back({.group = "bottleneck, of the chain", .name = percent(share), .link = plain, .line_of_chain = share});
+  for (const double fraction : kOfChain)
+    out.push_back({.group = "bottleneck, of the chain", .name = percent(fraction), .link = plain, .line_of_chain = fraction});
   return out;
 }
 

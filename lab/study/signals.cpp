@@ -34,12 +34,12 @@ struct Tally {
     times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
     return out;
   }
-  void judge(double error, double share) {
+  void judge(double error, double fraction) {
     ++result.samples;
     result.largest = std::max(result.largest, error);
     square += error * error;
-    result.worst = std::max(result.worst, share);
-    if (share > 1) ++result.over;
+    result.worst = std::max(result.worst, fraction);
+    if (fraction > 1) ++result.over;
   }
   SignalResult summary() const {
     SignalResult out = result;
@@ -84,12 +84,12 @@ class DeviceCoder {
       tally.result.bytes += packet.bytes.size();
     }
     const double error = norm(device_at(receiver, tick, 0).position - sample.position);
-    tally.judge(error, share(error, sample, contact));
+    tally.judge(error, fraction(error, sample, contact));
     return {};
   }
 
   /// Of what is permitted: in contact, the force must be right, too.
-  double share(double error, const DeviceSample& sample, const std::optional<DeviceContact>& contact) const {
+  double fraction(double error, const DeviceSample& sample, const std::optional<DeviceContact>& contact) const {
     const double grid = kHalfDiagonal * std::ldexp(1.0, -receiver.scene()->grid.position);
     const double length = error / (coding.every_tick ? grid : std::max(coding.position, grid));
     if (!contact) return length;

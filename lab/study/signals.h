@@ -26,7 +26,7 @@ struct SignalResult {
   std::string name;  ///< "0.3 mm", "4 %, 0.5 mm", "4 %, linear"
   std::uint64_t samples = 0, packets = 0, bytes = 0;
   double largest = 0, rms = 0;  ///< of the error
-  double worst = 0;             ///< largest error, as a share of what is permitted at that sample
+  double worst = 0;             ///< largest error, as a fraction of what is permitted at that sample
   std::uint64_t over = 0;       ///< samples off by more than permitted
   double time = 0;              ///< [s] median: one sample at the sender
 };

@@ -176,7 +176,7 @@ Study study_fem(Extent extent, const Progress& progress) {
       "the same, but N tetrahedra stay inside out. *Stopped*: a step was refused with an error that names step, tetrahedron and "
       "remedy (in stability.csv), and the state before it was kept. *Refused*: the run was not begun. The modal method keeps 12 "
       "modes of the linear problem and loses motion outside of them. Each method runs with the solver and the tolerance of a "
-      "scene that names the method; *chosen* is the method of a scene that names none, with the energy at the end as a share of "
+      "scene that names the method; *chosen* is the method of a scene that names none, with the energy at the end as a fraction of "
       "that at the start. The two slabs that turn freely are undamped: 1 is right. Newmark keeps the energy of a linear object, "
       "but not of one whose elements turn: in the map it has a stripe of stops at h omega_max of some 4 to 16. With longer "
       "steps its stages can no longer be solved; backward Euler takes over and damps. The explicit limit is bisected from tiny "

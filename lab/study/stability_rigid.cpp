@@ -178,7 +178,7 @@ void touch_rows(Study& study, Extent extent) {
   }
   for (const Rail& rail : {Rail{0.999, 1}, Rail{0.999, 17}})
     for (const double k : extent == Extent::full ? std::vector<double>{500, 1e4, 1e5, 5e5, 1e6} : std::vector<double>{500, 1e6}) {
-      Row row{.subject = subject, .parameters = parameters(rail), .verdict = touch(k, rail), .quantity = "share of the limit"};
+      Row row{.subject = subject, .parameters = parameters(rail), .verdict = touch(k, rail), .quantity = "fraction of the limit"};
       row.parameters.push_back({"k", k, "N/m"});
       row.measured = k / largest_spring(transition(rail));
       study.rows.push_back(row);

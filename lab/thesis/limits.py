@@ -36,17 +36,17 @@ def varying_delay(options):
         if FIRST <= t < LAST:
             counts[int((t - FIRST) / BIN)] += 1
     rows = [(FIRST + BIN * (i + 0.5), count / BIN / len(times)) for i, count in enumerate(counts)]
-    rows = [(at, share, gamma_density(at, shape, scale, fixed)) for at, share in rows]
+    rows = [(at, fraction, gamma_density(at, shape, scale, fixed)) for at, fraction in rows]
     return out.made(lambda: draw_histogram(rows),
-                    {"fig4.13a": (["round_trip_ms", "share_per_ms", "gamma_per_ms"], [[f"{a:g}", six(b), six(c)] for a, b, c in rows])})
+                    {"fig4.13a": (["round_trip_ms", "fraction_per_ms", "gamma_per_ms"], [[f"{a:g}", six(b), six(c)] for a, b, c in rows])})
 
 
 def draw_histogram(rows):
     fig, (axes,) = figure.panels()
-    at, share, gamma = zip(*rows)
-    axes.bar(at, [100 * s for s in share], BIN, color="0.8", edgecolor="0.4", linewidth=0.5, label="simulated network")
+    at, fraction, gamma = zip(*rows)
+    axes.bar(at, [100 * s for s in fraction], BIN, color="0.8", edgecolor="0.4", linewidth=0.5, label="simulated network")
     axes.plot(at, [100 * g for g in gamma], color="black", label="gamma distribution")
-    axes.set(xlabel="round trip [ms]", ylabel="share of the round trips [% per ms]")
+    axes.set(xlabel="round trip [ms]", ylabel="fraction of the round trips [% per ms]")
     axes.legend()
     return fig
 

@@ -181,10 +181,10 @@ def measured(shown, predicted):
     return {"seconds": shown["seconds"], "packets_per_s": traffic["packets_per_s"], "payload_bit_per_s": traffic["payload"]["bit_per_s"],
             "bytes_per_update": traffic["payload"]["bytes_per_update"],
             "visual_violations": predicted["position_m"]["over"] + predicted["rotation_rad"]["over"],
-            "share_felt_over_jnd": error["rendered_force_perception_N"]["over"] / shown["ticks"],
-            "share_in_contact": contact["samples"] / shown["ticks"],
+            "fraction_felt_over_jnd": error["rendered_force_perception_N"]["over"] / shown["ticks"],
+            "fraction_in_contact": contact["samples"] / shown["ticks"],
             "haptic_violations": predicted.get("contact_force_N", {"over": 0})["over"],
-            "share_shown_over": contact.get("share_over"), "worst_shown_ratio": contact.get("worst_ratio")}
+            "fraction_shown_over": contact.get("fraction_over"), "worst_shown_ratio": contact.get("worst_ratio")}
 
 
 def summarise(of, runs):
@@ -194,10 +194,10 @@ def summarise(of, runs):
     for name in ("payload_bit_per_s", "bytes_per_update"):
         out[name] = mean(column(name))
     out["visual_violations"] = sum(column("visual_violations"))
-    for name in ("share_felt_over_jnd", "share_in_contact"):
+    for name in ("fraction_felt_over_jnd", "fraction_in_contact"):
         out[name] = mean(column(name))
     if of["rule"] != "off":
-        out |= {"haptic_violations": sum(column("haptic_violations")), "share_shown_over": mean(column("share_shown_over")),
+        out |= {"haptic_violations": sum(column("haptic_violations")), "fraction_shown_over": mean(column("fraction_shown_over")),
                 "worst_shown_ratio": max(column("worst_shown_ratio"))}
     return out
 
@@ -256,9 +256,9 @@ SETTINGS_LEGEND = """
 rule broken     ticks in which the predicted state breaks the setting's haptic rule, all seeds and both hands together
 visual broken   ticks in which its position, and in which its rotation, breaks the visual threshold, the same
 The other columns are those of the scene's hand:
-shown over      share of the ticks in contact in which the shown state, smoothed or not, breaks the haptic rule
+shown over      fraction of the ticks in contact in which the shown state, smoothed or not, breaks the haptic rule
 shown worst     largest error in these ticks, as a multiple of the permitted error
-felt over JND   share of ticks in which the error of the rendered force is perceptible (more than 10 to 22 %)""".split("\n")
+felt over JND   fraction of ticks in which the error of the rendered force is perceptible (more than 10 to 22 %)""".split("\n")
 
 
 def settings_text(options, report, rows):
@@ -270,8 +270,8 @@ def settings_text(options, report, rows):
         cells.append([name, f"{slow['packets_per_s']:.1f}", f"{slow['standard_deviation']:.1f}", f"{fast['packets_per_s']:.1f}",
                       f"{fast['standard_deviation']:.1f}", thesis, f"{slow['payload_bit_per_s']:.0f}", f"{slow['bytes_per_update']:.2f}",
                       slow["haptic_violations"] + fast["haptic_violations"] if has_rule else "-",
-                      slow["visual_violations"] + fast["visual_violations"], percent(slow["share_shown_over"]) if has_rule else "-",
-                      f"{slow['worst_shown_ratio']:.2f}" if has_rule else "-", percent(slow["share_felt_over_jnd"])])
+                      slow["visual_violations"] + fast["visual_violations"], percent(slow["fraction_shown_over"]) if has_rule else "-",
+                      f"{slow['worst_shown_ratio']:.2f}" if has_rule else "-", percent(slow["fraction_felt_over_jnd"])])
     orders = [f"S4 > S8 > S18 > S30 {what} interpolation, {hand}: {order_of(of, names)}" for hand, of in
               (("the scene's hand", rows["scene_hand"]), ("the faster hand", rows["faster_hand"]))
               for what, names in (("without", WITHOUT), ("with", WITH))]
@@ -279,7 +279,7 @@ def settings_text(options, report, rows):
                  f"seeds 1 to {options.seeds}",
                  f"Chosen here: 1 virtual length unit = {options.length_unit:g} m, grip {options.grip}, the scene's hand and path.",
                  about_faster_hand(options), "", table.aligned(SETTINGS_HEAD, cells), SETTINGS_LEGEND,
-                 f"contact         {100 * rows['scene_hand']['S_R7']['share_in_contact']:.0f} % of the ticks", "", orders)
+                 f"contact         {100 * rows['scene_hand']['S_R7']['fraction_in_contact']:.0f} % of the ticks", "", orders)
 
 
 def draw_settings(options, runs):

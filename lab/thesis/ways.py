@@ -2,7 +2,7 @@
 """Figure 3.8 asks people which way of interpolation they prefer. In its place: what each way does to force and object.
 
 One run per seed, whose hand feels the client without interpolation; clients of all ways are sent the same packets. A second run per
-seed, whose hand feels an eased client (spec 60-client 8), has packets of its own.
+seed, whose hand feels a smoothed client (spec 60-client 8), has packets of its own.
 """
 import math
 
@@ -14,14 +14,14 @@ SCENES, DEADBANDS = ("push-1dof", "rotate-6dof", "rotate-push-lift"), (0.04, 0.2
 WAYS = ("none", "linear", "hermite", "blending")
 HEAD = ["scene", "p", "packets/s", "way", "out of the rule", "worst", "force step p50", "p99", "max", "acceleration p90 [m/s2]", "p99"]
 LEGEND = """
-out of the rule  share of the ticks in contact in which the normal force at what is shown is off by more than the rule permits
+out of the rule  fraction of the ticks in contact in which the normal force at what is shown is off by more than the rule permits
 worst            largest error as a multiple of what is permitted
 force step       change of the normal force's error in the tick of an update, over the force (above the floor)
 acceleration     of the shown object in contact, between updates; a step of the grid in 1 ms is 0.24 m/s2""".split("\n")
 
 
-def quantile(ordered, share):
-    return ordered[math.floor(share * (len(ordered) - 1) + 0.5)] if ordered else 0
+def quantile(ordered, fraction):
+    return ordered[math.floor(fraction * (len(ordered) - 1) + 0.5)] if ordered else 0
 
 
 def ways(options):
@@ -35,15 +35,15 @@ def ways(options):
             if scene == SCENES[0] and p == DEADBANDS[-1]:
                 drawn = runs[0][0]["curves"]
             rows.append({"scene": scene, "deadband": p, "packets_per_s": [same["packets_per_s"] for same, _ in runs],
-                         "eased_packets_per_s": [eased["packets_per_s"] for _, eased in runs],
+                         "smoothed_packets_per_s": [smoothed["packets_per_s"] for _, smoothed in runs],
                          "ways": [effect(way, [same["ways"][i] for same, _ in runs]) for i, way in enumerate(WAYS)]
-                         + [effect("eased", [eased["ways"][0] for _, eased in runs])]})
+                         + [effect("smoothed", [smoothed["ways"][0] for _, smoothed in runs])]})
     report = {"schema": "tactus.reproduce_ways/1", "figure": "fig3.8", "seeds": options.seeds, "grip": options.grip, "rows": rows}
     return Made(report, text_of(options, rows), lambda: draw(drawn), {"fig3.8": curves_table(drawn)})
 
 
 def requests_of(options, scene, p, seed):
-    """Clients of all ways; an eased client, which is that of profile main without interpolation."""
+    """Clients of all ways; a smoothed client, which is that of profile main without interpolation."""
     common = {"scene": scene, "deadband": p, "visual_position_m": 0.01 * options.length_unit, "visual_rotation_rad": 4 * DEGREE,
               "grip": options.grip, "seed": seed}  # bounds: table 3.3, with interpolation
     has_curves = scene == SCENES[0] and p == DEADBANDS[-1] and seed == 1
@@ -55,16 +55,16 @@ def effect(way, runs):
     steps, accelerations = (sorted(value for run in runs for value in run[of]) for of in ("force_steps", "accelerations_m_per_s2"))
     return {"way": way, "ticks_in_contact": sum(run["ticks_in_contact"] for run in runs),
             "ticks_over": sum(run["ticks_over"] for run in runs), "worst_ratio": max(run["worst_ratio"] for run in runs),
-            "force_step": [quantile(steps, share) for share in (0.5, 0.99, 1)],
-            "acceleration_m_per_s2": [quantile(accelerations, share) for share in (0.9, 0.99)]}
+            "force_step": [quantile(steps, fraction) for fraction in (0.5, 0.99, 1)],
+            "acceleration_m_per_s2": [quantile(accelerations, fraction) for fraction in (0.9, 0.99)]}
 
 
 def text_of(options, rows):
-    percent = lambda share: f"{100 * share:.2f} %"
+    percent = lambda fraction: f"{100 * fraction:.2f} %"
     cells = []
     for row in rows:
         for i, of in enumerate(row["ways"]):
-            rate = {0: "packets_per_s", len(WAYS): "eased_packets_per_s"}.get(i)
+            rate = {0: "packets_per_s", len(WAYS): "smoothed_packets_per_s"}.get(i)
             cells.append([row["scene"] if i == 0 else "", f"{100 * row['deadband']:.0f} %" if i == 0 else "",
                           f"{mean(row[rate]):.1f}" if rate else "", of["way"], percent(of["ticks_over"] / max(of["ticks_in_contact"], 1)),
                           f"{of['worst_ratio']:.2f}", *map(percent, of["force_step"]),

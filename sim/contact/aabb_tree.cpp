@@ -184,7 +184,7 @@ bool AabbTree::near_segment(const Box& box, const Vec3& from, const Vec3& way, d
          !apart(m.x, h.y, m.y, h.x, e.x, a.y, e.y, a.x);
 }
 
-/// Call test(leaf) for every triangle near the part of the path that still matters. It returns the share that matters from then on.
+/// Call test(leaf) for every triangle near the part of the path that still matters. It returns the fraction that matters from then on.
 template <class Test>
 void AabbTree::along(const Vec3& from, const Vec3& way, double radius, Test&& test) const noexcept {
   if (nodes_.empty()) return;

@@ -40,8 +40,8 @@ struct SurfacePoint {
 
 /// Where a segment or a moving sphere first meets the mesh.
 struct SurfaceHit {
-  double t = 0;     ///< share of the way, 0..1
-  double rest = 0;  ///< share of the way, 0..t, up to which a sphere keeps its slack
+  double t = 0;     ///< fraction of the way, 0..1
+  double rest = 0;  ///< fraction of the way, 0..t, up to which a sphere keeps its slack
   SurfacePoint at;  ///< point met; its distance is to the sphere's centre at that time
 };
 

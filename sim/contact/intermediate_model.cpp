@@ -109,8 +109,8 @@ void IntermediateModel::recut(std::span<const Vec3> vertices, const AabbTree& tr
 void IntermediateModel::approach() noexcept {
   tick_ = std::min(tick_ + 1, options_.ticks);
   if (reach_ == 0) return;
-  const double share = static_cast<double>(tick_) / options_.ticks;
-  for (const std::uint32_t v : moving_) next_[v] = share < 1 ? from_[v] + share * (to_[v] - from_[v]) : to_[v];
+  const double fraction = static_cast<double>(tick_) / options_.ticks;
+  for (const std::uint32_t v : moving_) next_[v] = fraction < 1 ? from_[v] + fraction * (to_[v] - from_[v]) : to_[v];
   proxy_.expect(reach_, shown_, next_, tree_);
   for (const std::uint32_t v : moving_) shown_[v] = next_[v];
   tree_.refit(shown_);

@@ -141,7 +141,7 @@ bool TriangleCache::collect(const Vec3& centre, double reach, const Sweep& spher
   });
 }
 
-/// Share of the path that the cache covers.
+/// Fraction of the path that the cache covers.
 double TriangleCache::covered(const Sweep& sphere) const noexcept {
   const double left = reach_ - norm(sphere.from - centre_);
   if (left >= 0 && norm(sphere.from + sphere.way - centre_) <= reach_) return 1;
@@ -150,15 +150,15 @@ double TriangleCache::covered(const Sweep& sphere) const noexcept {
 
 /// Rebuild the cache if it covers too little of the path. A short path is covered with a margin at both ends; of a long one only the
 /// start, as it usually stops early.
-/// out  share of the path that is covered, at most the limit
+/// out  fraction of the path that is covered, at most the limit
 double TriangleCache::cover(const Sweep& sphere, double limit) noexcept {
-  const double share = reach_ < 0 ? -1 : std::min(covered(sphere), limit), length = limit * norm(sphere.way);
-  if (share == limit) return limit;
+  const double fraction = reach_ < 0 ? -1 : std::min(covered(sphere), limit), length = limit * norm(sphere.way);
+  if (fraction == limit) return limit;
   if (length < 2 * wanted_reach_) {
     is_of_use_ = collect(sphere.from + (0.5 * limit) * sphere.way, 0.5 * (length + wanted_reach_), sphere);
     return limit;
   }
-  if (share * norm(sphere.way) > 0.25 * wanted_reach_) return share;
+  if (fraction * norm(sphere.way) > 0.25 * wanted_reach_) return fraction;
   is_of_use_ = collect(sphere.from, wanted_reach_, sphere);
   return std::min(covered(sphere), limit);
 }
@@ -194,10 +194,10 @@ std::optional<SurfaceHit> TriangleCache::first_around(const Sweep& sphere, std::
 
 std::optional<SurfaceHit> TriangleCache::sweep(const Sweep& sphere, std::span<const std::uint32_t> left_out,
                                                double limit) noexcept {
-  const double share = is_of_use_ ? cover(sphere, limit) : 0;
+  const double fraction = is_of_use_ ? cover(sphere, limit) : 0;
   if (is_of_use_) {
-    const auto first = first_around(sphere, left_out, share);
-    if (first || share == limit) return first;
+    const auto first = first_around(sphere, left_out, fraction);
+    if (first || fraction == limit) return first;
     is_of_use_ = false;
   }
   return tree_.sweep(sphere, vertices_, left_out);

@@ -61,7 +61,7 @@ struct TriangleShape {
   // The closest point lies on an edge that can be seen from p.
   TrianglePoint best;
   best.distance2 = HUGE_VAL;
-  double share = 0;
+  double fraction = 0;
   std::size_t start = 0, end = 0;
   const auto try_edge = [&](std::size_t i, std::size_t j, const Vec3& from_start, const Vec3& edge, double length2) {
     const double along = dot(from_start, edge) / length2, positive = along > 0 ? along : 0, part = positive < 1 ? positive : 1;
@@ -70,15 +70,15 @@ struct TriangleShape {
     if (!(distance2 < best.distance2)) return;
     best.distance2 = distance2;
     best.point = point;
-    share = part;
+    fraction = part;
     start = i;
     end = j;
   };
   if (weight[0] < 0) try_edge(1, 2, p - s.v[1], s.across, s.across2);
   if (weight[1] < 0) try_edge(0, 2, q, s.w, s.w2);
   if (weight[2] < 0) try_edge(0, 1, q, s.u, s.u2);
-  best.weights[start] = 1 - share;
-  best.weights[end] = share;
+  best.weights[start] = 1 - fraction;
+  best.weights[end] = fraction;
   return best;
 }
 inline TrianglePoint closest_on_triangle(const Vec3& p, const Corners& v) noexcept {
@@ -94,9 +94,9 @@ struct Sweep {
 
 /// Where a moving sphere first touches a triangle.
 struct TriangleTouch {
-  double t = 0;  ///< share of the way, 0..1, of the contact; up to there the distance is never below the radius
+  double t = 0;  ///< fraction of the way, 0..1, of the contact; up to there the distance is never below the radius
   double rest =
-      0;  ///< share of the way, 0..t, up to which the distance is at least radius + slack (0: it is not even at the start)
+      0;  ///< fraction of the way, 0..t, up to which the distance is at least radius + slack (0: it is not even at the start)
   TrianglePoint at;  ///< point touched
 };
 

@@ -49,9 +49,9 @@ class Objects final : public DeformableObjects {
   Touch touch(std::size_t user, const DeviceSample& device, bool) noexcept override {
     return touches_[user] = probes_.touch(user, device.position, [&](std::uint32_t i) { return as_computed(*bodies_[i]); });
   }
-  void push(std::size_t user, double share) noexcept override {
+  void push(std::size_t user, double fraction) noexcept override {
     const auto& [contact, surface, proxy, force] = touches_[user];
-    if (surface) bodies_[surface->mesh]->push(surface->triangle, surface->weights, -(share * force));
+    if (surface) bodies_[surface->mesh]->push(surface->triangle, surface->weights, -(fraction * force));
   }
   tl::expected<void, Diagnostic> step() override;
   void observe(TraceFrame& frame) noexcept override;

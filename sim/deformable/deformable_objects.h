@@ -40,7 +40,7 @@ struct DeformationTime {
   double wall = 0, cpu = 0;
 };
 
-/// Error of single deformation steps by step doubling, as shares of the motion in a step (sim/fem/error_estimate.h), and the energy error
+/// Error of single deformation steps by step doubling, as fractions of the motion in a step (sim/fem/error_estimate.h), and the energy error
 /// of all together.
 struct DeformableError {
   double of_motion = 0, most_of_motion = 0;

@@ -7,7 +7,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr double kGamma = 2 - std::numbers::sqrt2;  ///< share of the trapezoidal stage: both stages have the same c
+constexpr double kGamma = 2 - std::numbers::sqrt2;  ///< fraction of the trapezoidal stage: both stages have the same c
 
 StepReport operator+(const StepReport& a, const StepReport& b) {
   return {a.newton_iterations + b.newton_iterations, a.solver_iterations + b.solver_iterations, a.converged && b.converged};

@@ -51,9 +51,9 @@ struct IntegratorOptions {
   LinearSolver solver = LinearSolver::conjugate_gradients;
   double solver_tolerance = 1e-6;  ///< of conjugate gradients: relative residual of the linear system
   int newton_iterations = 10;      ///< at most; 1: linearly implicit
-  /// Stop when an update d, or the estimate of the next one, is below this share of the stage's first update, or below 1e-10 of the
+  /// Stop when an update d, or the estimate of the next one, is below this fraction of the stage's first update, or below 1e-10 of the
   /// motion, sqrt(v^T M v). The size of d is sqrt(-d . r) with the residual r: for d = -A^-1 r its energy norm in the system matrix
-  /// A, without a product with A. A larger share of the motion would bias every step: the missing part always has the same sign.
+  /// A, without a product with A. A larger fraction of the motion would bias every step: the missing part always has the same sign.
   double newton_tolerance = 1e-8;
   int modes = 0;  ///< of `modal`, 1 .. free degrees of freedom
 };

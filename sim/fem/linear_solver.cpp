@@ -128,7 +128,7 @@ tl::expected<int, Diagnostic> NewtonDirection::find(StageSystem& system, const S
 
 namespace {
 
-constexpr std::size_t kShare = 4;
+constexpr std::size_t kParts = 4;
 
 Eigen::Index dof(std::size_t vertex) { return static_cast<Eigen::Index>(3 * vertex); }
 
@@ -155,9 +155,9 @@ VertexRotations::VertexRotations(const FemModel& model) {
   for (const Eigen::Vector3d& x : rest_) size_ += (x - middle_).squaredNorm();
 }
 
-void VertexRotations::follow(const Eigen::VectorXd& u, std::size_t share) noexcept {
+void VertexRotations::follow(const Eigen::VectorXd& u, std::size_t parts) noexcept {
   turn_all(u);
-  const std::size_t count = (vertex_.size() + share - 1) / share;
+  const std::size_t count = (vertex_.size() + parts - 1) / parts;
   for (std::size_t i = 0; i < count; ++i) {
     turn(next_, u);
     next_ = next_ + 1 == vertex_.size() ? 0 : next_ + 1;
@@ -236,7 +236,7 @@ tl::expected<std::unique_ptr<DescentDirection>, Diagnostic> PrefactoredDirection
 /// The two loops of L-BFGS, the first from the newest pair back, the second up to it, both in the frame of the rest shape.
 tl::expected<int, Diagnostic> PrefactoredDirection::find(StageSystem& system, const Stage& /*stage*/, const Eigen::VectorXd& r,
                                                          Eigen::VectorXd& d) {
-  if (turning_) rotations_.follow(system.ahead(), kShare);
+  if (turning_) rotations_.follow(system.ahead(), kParts);
   turned_ = -r;
   to_rest(turned_);
   for (std::size_t i = 0; i < kMemory; ++i) {

@@ -80,8 +80,8 @@ class VertexRotations {
  public:
   explicit VertexRotations(const FemModel& model);
 
-  /// Update the next `share`-th of the free vertices.   in  u [3N]   time O(vertices / share)
-  void follow(const Eigen::VectorXd& u, std::size_t share) noexcept;
+  /// Update the next of `parts` parts of the free vertices.   in  u [3N]   time O(vertices / parts)
+  void follow(const Eigen::VectorXd& u, std::size_t parts) noexcept;
   /// out = Q^T in.   in, out: free degrees of freedom
   void to_rest(const Eigen::VectorXd& in, Eigen::VectorXd& out) const noexcept;
   /// out = Q in.

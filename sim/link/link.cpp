@@ -15,7 +15,7 @@ constexpr Microseconds kHour = 3'600'000'000;
 constexpr std::size_t kHeaders = 28;  // [bytes] of IPv4 and UDP
 
 bool is_time(Microseconds t) noexcept { return t >= 0 && t <= kHour; }
-bool is_share(double share) noexcept { return share >= 0 && share <= 1; }
+bool is_fraction(double fraction) noexcept { return fraction >= 0 && fraction <= 1; }
 
 /// One after the other, from 0 on.
 bool are_in_order(const std::vector<DelayChange>& recorded) noexcept {
@@ -35,13 +35,13 @@ bool are_in_order(const std::vector<Outage>& outages) noexcept {
   return true;
 }
 
-/// Share of good datagrams after which a burst begins: bursts of this mean length then make up `loss` of all.
+/// Fraction of good datagrams after which a burst begins: bursts of this mean length then make up `loss` of all.
 double burst_begin(double loss, double burst) noexcept { return loss >= 1 ? 1 : loss / (burst * (1 - loss)); }
 
 bool are_valid(const LinkOptions& o) noexcept {
   return is_time(o.delay) && is_time(o.jitter) && is_time(o.gamma_mean) && is_time(o.gamma_deviation) && is_time(o.gamma_piece) &&
-         o.gamma_piece >= 1000 && (o.gamma_mean > 0 || o.gamma_deviation == 0) && is_time(o.held_back_by) && is_share(o.loss) &&
-         is_share(o.duplicates) && is_share(o.held_back) && o.burst >= 1 && std::isfinite(o.burst) &&
+         o.gamma_piece >= 1000 && (o.gamma_mean > 0 || o.gamma_deviation == 0) && is_time(o.held_back_by) && is_fraction(o.loss) &&
+         is_fraction(o.duplicates) && is_fraction(o.held_back) && o.burst >= 1 && std::isfinite(o.burst) &&
          burst_begin(o.loss, o.burst) <= 1 && o.rate >= 0 && std::isfinite(o.rate) && are_in_order(o.recorded) &&
          are_in_order(o.outages);
 }
@@ -57,8 +57,8 @@ double normal(Random& random) noexcept {
 /// Gamma with this shape and scale 1 (Marsaglia and Tsang 2000).
 double gamma(Random& random, double shape) noexcept {
   if (shape < 1) {
-    const double share = power(random.uniform(0, 1), 1 / shape);
-    return gamma(random, shape + 1) * share;
+    const double fraction = power(random.uniform(0, 1), 1 / shape);
+    return gamma(random, shape + 1) * fraction;
   }
   const double d = shape - 1.0 / 3, c = 1 / std::sqrt(9 * d);
   while (true) {

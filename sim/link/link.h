@@ -42,7 +42,7 @@ class Network {
   struct View {
     Receiver* receiver = nullptr;
     std::int64_t tick = -1;   ///< -1: nothing has come yet
-    double force_share = 1;   ///< of a force that may be rendered: less than 1 while the data are old
+    double force_fraction = 1;   ///< of a force that may be rendered: less than 1 while the data are old
     std::uint32_t delay = 0;  ///< [ticks] age of what is shown, as an answer to the own device; 0 while it is not known
   };
   virtual View view(std::size_t user) noexcept = 0;
@@ -96,10 +96,10 @@ struct LinkOptions {
 
   std::vector<DelayChange> recorded{};  ///< a measured delay over time, starting at 0; the last entry says when it begins anew
 
-  double loss = 0;        ///< share of datagrams
+  double loss = 0;        ///< fraction of datagrams
   double burst = 1;       ///< [datagrams] mean length of a row of losses (Gilbert-Elliott); 1: independent of each other
-  double duplicates = 0;  ///< share of datagrams that arrive twice, each copy with a jitter of its own
-  double held_back = 0;   ///< share of datagrams that come later than others sent after them, by
+  double duplicates = 0;  ///< fraction of datagrams that arrive twice, each copy with a jitter of its own
+  double held_back = 0;   ///< fraction of datagrams that come later than others sent after them, by
   Microseconds held_back_by = 0;
   double rate = 0;                ///< [bit/s] of the bottleneck, IP and UDP headers included; 0: no limit
   std::size_t queue = 65536;      ///< [bytes] before the bottleneck; what does not fit is lost
@@ -121,8 +121,8 @@ class Link {
     std::span<const std::uint8_t> bytes;
   };
 
-  /// err  invalid_argument R-LNK-1: a time is negative or over an hour, a piece is shorter than 1 ms, a share is not within 0 and 1, a
-  ///      burst is shorter than 1 or than the share of losses asks for, the rate is not finite, or recorded delays and outages are
+  /// err  invalid_argument R-LNK-1: a time is negative or over an hour, a piece is shorter than 1 ms, a fraction is not within 0 and 1, a
+  ///      burst is shorter than 1 or than the fraction of losses asks for, the rate is not finite, or recorded delays and outages are
   ///      not in order
   static Result<Link> create(const LinkOptions& options);
 

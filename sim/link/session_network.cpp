@@ -182,7 +182,7 @@ void SessionNetwork::leave() noexcept {
 Network::View SessionNetwork::view(std::size_t user) noexcept {
   SessionClient& client = *users_[user].client;
   const std::uint64_t delay = client.round_trip_shown(now_).value_or(0);
-  return {client.receiver(), client.shown_tick(now_), client.force_share(now_),
+  return {client.receiver(), client.shown_tick(now_), client.force_fraction(now_),
           static_cast<std::uint32_t>((delay * tick_rate_ + 500'000) / 1'000'000)};
 }
 

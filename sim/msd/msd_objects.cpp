@@ -90,10 +90,10 @@ Touch MsdObjects::touch(std::size_t user, const DeviceSample& device, bool held)
   return out;
 }
 
-void MsdObjects::push(std::size_t user, double share) noexcept {
+void MsdObjects::push(std::size_t user, double fraction) noexcept {
   if (!touched_[user]) return;
   auto& [spec, loop] = bodies_[*touched_[user]];
-  loop.load(dot(share * forces_[user], spec.normal));
+  loop.load(dot(fraction * forces_[user], spec.normal));
 }
 
 tl::expected<void, Diagnostic> MsdObjects::step() {

@@ -36,7 +36,7 @@ class MsdObjects final : public Simulated {
   /// Also begins the tick of the loops.
   void observe(TraceFrame& frame) noexcept override;
   Touch touch(std::size_t user, const DeviceSample& device, bool held) noexcept override;
-  void push(std::size_t user, double share) noexcept override;
+  void push(std::size_t user, double fraction) noexcept override;
   /// Every N-th call deforms.   err  invalid_argument R-SIM-1: a surface is beyond 1e4 m
   tl::expected<void, Diagnostic> step() override;
 

@@ -41,13 +41,13 @@ void PastShapes::hear(std::span<const Displacement> displacements, unsigned posi
   age_ = age;
 }
 
-void PastShapes::compare(double tick, double share) noexcept {
+void PastShapes::compare(double tick, double fraction) noexcept {
   std::size_t before = 0;
   while (before + 1 < ticks_.size() && static_cast<double>(tick_back(before)) > tick) ++before;
   const std::size_t after = before > 0 ? before - 1 : 0;
   // Between two shapes it moves; after a longer rest, in the last period of it.
   const double way = std::clamp(1 - (static_cast<double>(tick_back(after)) - tick) / period_, 0.0, 1.0);
-  const auto part = static_cast<float>(way), taken = static_cast<float>(share);
+  const auto part = static_cast<float>(way), taken = static_cast<float>(fraction);
   const float *a = back(before), *b = back(after);
   for (std::size_t i = 0; i < size_; ++i) {
     const float own = a[i] + part * (b[i] - a[i]);
@@ -71,7 +71,7 @@ void PastShapes::show_heard() noexcept {
 namespace {
 
 constexpr double kSettle = 0.1, kSettleYielding = 0.02;  // tau [s]: a rigid object, and those that yield
-constexpr double kShare = kTick / kSettle, kShareYielding = kTick / kSettleYielding;
+constexpr double kFraction = kTick / kSettle, kFractionYielding = kTick / kSettleYielding;
 constexpr double kClose = 1e-4, kCloseTurn = 2e-3;  // [m, rad]
 constexpr double kFar = 0.3, kFarTurn = 1.0;        // [m, rad] then the object is put to its place
 
@@ -99,7 +99,7 @@ Quat normalised(const Quat& q) noexcept {
 /// Of an error, what to correct in this tick.
 Vec3 part(const Vec3& error, double close) noexcept {
   const double size = norm(error);
-  return size > close ? (kShare * (1 - close / size)) * error : Vec3{};
+  return size > close ? (kFraction * (1 - close / size)) * error : Vec3{};
 }
 
 /// Components along the axes whose bits are set, from bit `first` on.
@@ -229,7 +229,7 @@ void Prediction::correct_yielding(std::size_t object, std::int64_t then) noexcep
   const std::int64_t began = then - age, into = (began % period + period) % period;
   const Vec3 &a = pasts_[object].at(began).position, &b = pasts_[object].at(began + period).position;
   const Vec3 own = a + (static_cast<double>(into) / static_cast<double>(period)) * (b - a);
-  offset = offset + kShareYielding * (heard_[object].position - own - offset);
+  offset = offset + kFractionYielding * (heard_[object].position - own - offset);
   if (own_->frame().tick % period == 0) poses_[object].position = own_->frame().objects[object].pose.position + offset;
 }
 

@@ -6,7 +6,7 @@
 /// got there. What the server tells is R old, as an answer to the device, and is compared with the own state of R ago:
 ///
 ///   rigid objects  e = server's pose - own pose of R ago, with all that was corrected since. In each tick the own pose follows by the
-///                  share T_s / 0.1 s of e: no force jumps. Less than 0.1 mm and 2 mrad are the codec's, and left alone.
+///                  fraction T_s / 0.1 s of e: no force jumps. Less than 0.1 mm and 2 mrad are the codec's, and left alone.
 ///                  What cannot move stays where the scene has it.
 ///   others         shown = own shape + mean of (server's shape - own shape of R ago), over 0.02 s: elastic objects keep no error
 ///
@@ -89,9 +89,9 @@ class PastShapes {
   /// [ticks] age of a shape that was heard and not compared; none: negative
   double heard_age() const noexcept { return age_; }
   /// Compare what was heard with the own shape of that tick, between those before and after it; forget it.
-  /// in   share  of the difference that is taken over
+  /// in   fraction  of the difference that is taken over
   /// time O(V), no allocation
-  void compare(double tick, double share) noexcept;
+  void compare(double tick, double fraction) noexcept;
   /// The own newest shape and what the server's add to it.   time O(V), no allocation
   void show() noexcept;
   /// Instead: what was heard, as it is.

@@ -53,8 +53,8 @@ int RigidWorld::Impl::collide(dGeomID a, dGeomID b) {
   return on_mesh ? keep_outermost(std::span(found).first(static_cast<std::size_t>(count)), kMaxContacts) : count;
 }
 
-/// Contacts after a share of this tick's way, into `found`.
-int RigidWorld::Impl::collide_at(const Pair& pair, double share) {
+/// Contacts after a fraction of this tick's way, into `found`.
+int RigidWorld::Impl::collide_at(const Pair& pair, double fraction) {
   const auto shift = [this](std::uint32_t body, double by) {
     const Vec3 d = way(body);
     if (d == Vec3{}) return;
@@ -63,8 +63,8 @@ int RigidWorld::Impl::collide_at(const Pair& pair, double share) {
   };
   for (const std::uint32_t i : {pair.a, pair.b})
     if (i != kFloor && bodies[i].handle) bodies[i].swept_from = vec(dBodyGetPosition(bodies[i].handle));
-  shift(pair.a, share);
-  shift(pair.b, share);
+  shift(pair.a, fraction);
+  shift(pair.b, fraction);
   const int count = collide(geom(pair.a), geom(pair.b));
   shift(pair.a, 0);
   shift(pair.b, 0);

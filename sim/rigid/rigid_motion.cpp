@@ -38,7 +38,7 @@ bool are_same(const RigidSample& a, const RigidSample& b) {
 }  // namespace
 
 /// Decide how much of this step's forces acts. A group begins to move as a whole: if one of it moves already, its weight rests on others.
-void RigidWorld::Impl::share_pushes() {
+void RigidWorld::Impl::scale_pushes() {
   for (auto first = groups.begin(); first != groups.end();) {
     const std::uint32_t island = bodies[*first].island;
     const auto last = island == kFloor
@@ -48,7 +48,7 @@ void RigidWorld::Impl::share_pushes() {
     const bool calm = std::all_of(first, last, [this](std::uint32_t i) { return bodies[i].push == Push{}; });
     for (; first != last; ++first) {
       Body& body = bodies[*first];
-      body.share = start ? 0.5 : 1;
+      body.fraction = start ? 0.5 : 1;
       body.calm = calm;
       body.applied = {at_tick(body.pushed.force, body.push.force), at_tick(body.pushed.torque, body.push.torque)};
     }
@@ -60,7 +60,7 @@ Motion RigidWorld::Impl::motion_without_contact(const Body& body) const {
   const Quat rotation = quaternion(body.handle);
   const Vec3 torque = rotate(conjugate(rotation), body.applied.torque);
   const auto [v, w] = motion_of(body.handle);
-  return {v + h * (body.share * gravity + (1 / body.spec.mass) * body.applied.force),
+  return {v + h * (body.fraction * gravity + (1 / body.spec.mass) * body.applied.force),
           w + h * rotate(rotation, body.inertia.inverse * torque)};
 }
 
@@ -78,7 +78,7 @@ void RigidWorld::Impl::begin(Body& body) const {
 }
 
 void RigidWorld::Impl::add_forces(const Body& body) const {
-  const Vec3 force = body.applied.force + (body.share * body.spec.mass) * gravity;
+  const Vec3 force = body.applied.force + (body.fraction * body.spec.mass) * gravity;
   dBodyAddForce(body.handle, force.x, force.y, force.z);
   dBodyAddTorque(body.handle, body.applied.torque.x, body.applied.torque.y, body.applied.torque.z);
 }
@@ -90,8 +90,8 @@ void RigidWorld::Impl::end(Body& body) {
   body.starts = body.stands;
   const Motion now = motion_of(body.handle);
   body.change_before = body.change;
-  body.change = {(1 / body.share) * (now.velocity - body.stepped.velocity),
-                 (1 / body.share) * (now.angular_velocity - body.stepped.angular_velocity)};
+  body.change = {(1 / body.fraction) * (now.velocity - body.stepped.velocity),
+                 (1 / body.fraction) * (now.angular_velocity - body.stepped.angular_velocity)};
   judge_drift(body);
   judge_flight(body);
 }

@@ -78,10 +78,10 @@ Touch RigidObjects::touch(std::size_t user, const DeviceSample& device, bool) no
   return touches_[user] = probes_[user].move(device.position, device.is_down(kLiftButton), poses_);
 }
 
-void RigidObjects::push(std::size_t user, double share) noexcept {
+void RigidObjects::push(std::size_t user, double fraction) noexcept {
   const Touch& touch = touches_[user];
   if (touch.contact.kind == ContactKind::none) return;
-  const Vec3 force = -(share * touch.force);
+  const Vec3 force = -(fraction * touch.force);
   world_.push(touch.contact.object, force, touch.proxy);
   if (!loads_.empty()) pushing_[touch.contact.object * touches_.size() + user] = force;
 }

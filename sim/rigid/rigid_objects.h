@@ -64,7 +64,7 @@ class RigidObjects final : public Simulated {
   /// time O(objects that moved)
   void observe(TraceFrame& frame) noexcept override;
   Touch touch(std::size_t user, const DeviceSample& device, bool held) noexcept override;
-  void push(std::size_t user, double share) noexcept override;
+  void push(std::size_t user, double fraction) noexcept override;
   tl::expected<void, Diagnostic> step() override;
 
   /// Put an object elsewhere, as of this tick.   no allocation

@@ -109,7 +109,7 @@ struct Body {
   Inertia inertia;
   Push push, pushed;      // of this step, and of the one before
   Push applied;           // of this step, with half of what begins or ends
-  double share = 1;       // of the step in which forces act: half of it in the first of a motion
+  double fraction = 1;       // of the step in which forces act: half of it in the first of a motion
   std::size_t mover = 0;  // its number among those that move
   double reach = 0;       // [m] of its corners from its centre
   bool awake = false;
@@ -136,7 +136,7 @@ struct Body {
 inline Motion motion_at_tick(const Body& body) {
   const auto lesser = [](double a, double b) { return a * b <= 0 ? 0 : std::abs(a) < std::abs(b) ? a : b; };
   const auto at_tick = [&](const Vec3& now, const Vec3& last, const Vec3& before) {
-    if (body.share < 1) return now + 0.5 * last;  // nothing was before
+    if (body.fraction < 1) return now + 0.5 * last;  // nothing was before
     return now + 0.5 * Vec3{lesser(last.x, before.x), lesser(last.y, before.y), lesser(last.z, before.z)};
   };
   const auto [v, w] = motion_of(body.handle);
@@ -217,7 +217,7 @@ struct RigidWorld::Impl {
   std::uint32_t group_of(std::uint32_t body);
   void make_groups();
   Vec3 way(std::uint32_t body) const;
-  int collide_at(const Pair& pair, double share);
+  int collide_at(const Pair& pair, double fraction);
   int sweep(const Pair& pair);
   double smallest(std::uint32_t body) const;
 
@@ -239,7 +239,7 @@ struct RigidWorld::Impl {
   void tell_loads();
   void add_hold(const Pair& pair);
   // Motion (rigid_motion.cpp)
-  void share_pushes();
+  void scale_pushes();
   rigid::Motion motion_without_contact(const Body& body) const;
   Vec3 velocity_without_contact(const Body* body, const Vec3& point) const;
   void begin(Body& body) const;

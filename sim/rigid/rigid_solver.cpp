@@ -19,7 +19,7 @@ namespace {
 // For one cube on the floor QuickStep's error in the friction force falls from 3e-2 (20 iterations) over 1e-6 (50) to 1e-8 (100) of mu N.
 constexpr int kMore = 10;                 // times the iterations
 constexpr std::size_t kFewContacts = 40;  // for the direct solver, whose time grows with the third power
-// A solid never is quite rigid: the direct solver needs that to choose among the many ways to carry a load. As shares of the compliance
+// A solid never is quite rigid: the direct solver needs that to choose among the many ways to carry a load. As fractions of the compliance
 // 1/m of the lightest body; the first makes a cube with 1e5 times its weight on it sink by 0.02 mm.
 constexpr double kCompliances[] = {4e-9, 1e-7};
 
@@ -62,7 +62,7 @@ void RigidWorld::Impl::attach(const Pair& pair) {
 void RigidWorld::Impl::add_hold(const Pair& pair) {
   for (std::size_t i = pair.first; i < pair.first + pair.count; ++i) {
     const Vec3 normal = vec(touching[i].geom.normal);
-    const double pressed = std::max(0.0, dot(vec(forces[i].f1), normal)) / bodies[pair.a].share;
+    const double pressed = std::max(0.0, dot(vec(forces[i].f1), normal)) / bodies[pair.a].fraction;
     const Vec3 limit = touching[i].surface.mu * pressed * normal;
     const auto add = [&limit](Vec3& hold) { hold = dot(hold, limit) < 0 ? hold - limit : hold + limit; };
     add(bodies[pair.a].load.hold);
@@ -75,7 +75,7 @@ void RigidWorld::Impl::tell_loads() {
   for (const std::uint32_t i : awake) {
     Body& body = bodies[i];
     const Vec3 change = vec(dBodyGetLinearVel(body.handle)) - body.stepped.velocity;
-    body.load = {.external = (1 / body.share) * (body.spec.mass / h * change - body.applied.force), .hold = {}};
+    body.load = {.external = (1 / body.fraction) * (body.spec.mass / h * change - body.applied.force), .hold = {}};
   }
   for (const Pair& pair : pairs) add_hold(pair);
 }
@@ -169,9 +169,9 @@ Residual RigidWorld::Impl::solve_directly(const Group& group, Residual left) {
   double lightest = bodies[group.members.front()].spec.mass;
   for (const std::uint32_t i : group.members) lightest = std::min(lightest, bodies[i].spec.mass);
   const double compliance = dWorldGetCFM(world);
-  for (const double share : kCompliances) {
+  for (const double fraction : kCompliances) {
     if (left.is_solution()) break;
-    dWorldSetCFM(world, share / lightest);
+    dWorldSetCFM(world, fraction / lightest);
     left = again(group, left, 0);
   }
   dWorldSetCFM(world, compliance);

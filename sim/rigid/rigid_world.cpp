@@ -205,7 +205,7 @@ tl::expected<void, Diagnostic> RigidWorld::Impl::step() {
         .error = fail(Errc::limit_exceeded, "R-SIM-6").value(), .step = tick, .kind = "object", .element = awake.front()});
   make_groups();
   changed.insert(changed.end(), awake.begin(), awake.end());
-  share_pushes();
+  scale_pushes();
   for (const std::uint32_t i : awake) {
     if (!can_step(motion_without_contact(bodies[i]))) return broken(i);
     begin(bodies[i]);

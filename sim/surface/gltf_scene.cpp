@@ -22,15 +22,15 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 /// On the shorter arc from a to b, both of length 1.
-Quat between(const Quat& a, Quat b, double share) {
+Quat between(const Quat& a, Quat b, double fraction) {
   double cosine = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
   if (cosine < 0) {
     b = {-b.w, -b.x, -b.y, -b.z};
     cosine = -cosine;
   }
   const double angle = std::acos(std::min(cosine, 1.0)), sine = std::sin(angle);
-  const double p = sine < 1e-9 ? 1 - share : std::sin((1 - share) * angle) / sine;
-  const double q = sine < 1e-9 ? share : std::sin(share * angle) / sine;
+  const double p = sine < 1e-9 ? 1 - fraction : std::sin((1 - fraction) * angle) / sine;
+  const double q = sine < 1e-9 ? fraction : std::sin(fraction * angle) / sine;
   return {p * a.w + q * b.w, p * a.x + q * b.x, p * a.y + q * b.y, p * a.z + q * b.z};
 }
 

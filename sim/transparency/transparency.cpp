@@ -239,10 +239,10 @@ Complex slow_client_impedance(const DeformableCoupling& coupling, double omega, 
 std::optional<double> tolerable_delay(const DeformableCoupling& coupling, double omega, double weber) noexcept {
   const double ratio = follows_slowly(coupling);
   const double stiffness = square(coupling.client_stiffness), damper = square(coupling.client_damping * omega);
-  const double share = ((1 + square(ratio)) * (stiffness + damper) - square((1 + weber) * (1 - ratio)) * stiffness) /
+  const double cos_angle = ((1 + square(ratio)) * (stiffness + damper) - square((1 + weber) * (1 - ratio)) * stiffness) /
                        (2 * ratio * (stiffness + damper));
-  if (!(std::abs(share) <= 1)) return std::nullopt;
-  return arc_cosine(share) / omega;
+  if (!(std::abs(cos_angle) <= 1)) return std::nullopt;
+  return arc_cosine(cos_angle) / omega;
 }
 
 double reduced_stiffness(const DeformableCoupling& coupling, double omega, double round_trip) noexcept {

@@ -105,10 +105,10 @@ struct SteadyPush {
 
 /// [N] at the client.   in  round_trip [s]   4.13, 4.14
 double client_force(const SteadyPush& push, double client_stiffness, double server_stiffness, double round_trip) noexcept;
-/// [s] Round trip at which the client force is a share `weber` above what it should be; none: nothing moves, any delay is hidden.
+/// [s] Round trip at which the client force is a fraction `weber` above what it should be; none: nothing moves, any delay is hidden.
 /// 4.18 to 4.20
 std::optional<double> tolerable_delay(const SteadyPush& push, double stiffness, double weber) noexcept;
-/// [s] Change of the round trip that raises or lowers the client force by a share `weber`; none: nothing moves.   4.21 to 4.23
+/// [s] Change of the round trip that raises or lowers the client force by a fraction `weber`; none: nothing moves.   4.21 to 4.23
 std::optional<double> tolerable_change(const SteadyPush& push, double stiffness, double round_trip, double weber) noexcept;
 /// [N/m] Client stiffness with which the client force is that of the server.   4.24 to 4.26
 double reduced_stiffness(const SteadyPush& push, double stiffness, double round_trip) noexcept;
@@ -150,7 +150,7 @@ std::complex<double> server_impedance(const DeformableCoupling& coupling, double
 /// [N s/m] With K_i instead of K_i(s).   4.39, 4.44
 std::complex<double> slow_client_impedance(const DeformableCoupling& coupling, double omega, double round_trip) noexcept;
 
-/// [s] Round trip at which the client's impedance is a share `weber` above the server's, both with K_i and with k_c = k_s; none: it is so
+/// [s] Round trip at which the client's impedance is a fraction `weber` above the server's, both with K_i and with k_c = k_s; none: it is so
 /// at every delay (the client's damping alone does it), or at none.
 /// in   omega [rad/s] > 0      4.45
 std::optional<double> tolerable_delay(const DeformableCoupling& coupling, double omega, double weber) noexcept;

@@ -98,10 +98,10 @@ Spiral::Spiral(const Vec3& from, const Vec3& to, const Vec3& centre, double turn
   sweep_ = kTurn * turns + std::remainder(end - angle_, kTurn);
 }
 
-Aim Spiral::at(double share) const noexcept {
-  const double radius = radius_ + share * growth_, angle = angle_ + share * sweep_;
+Aim Spiral::at(double fraction) const noexcept {
+  const double radius = radius_ + fraction * growth_, angle = angle_ + fraction * sweep_;
   const Vec3 outward{cosine(angle), sine(angle), 0}, onward{-outward.y, outward.x, 0};
-  return {Vec3{centre_.x, centre_.y, height_ + share * rise_} + radius * outward,
+  return {Vec3{centre_.x, centre_.y, height_ + fraction * rise_} + radius * outward,
           growth_ * outward + (radius * sweep_) * onward + Vec3{0, 0, rise_}};
 }
 
@@ -141,11 +141,11 @@ DeviceSample Hand::step(const Vec3& felt, const Pose& object) noexcept {
   begin_phase(object);
   const bool moving = tick_ < end_;
   const double duration = static_cast<double>(end_ - begin_) * kTick;
-  const double share = moving ? static_cast<double>(tick_ - begin_) * kTick / duration : 1;
-  const MinimumJerk done = minimum_jerk(share);
+  const double fraction = moving ? static_cast<double>(tick_ - begin_) * kTick / duration : 1;
+  const MinimumJerk done = minimum_jerk(fraction);
   Aim target{from_ + done.place * (to_ - from_), moving ? (done.slope / duration) * (to_ - from_) : Vec3{}};
   if (moving && spiral_) {
-    target = spiral_->at(share);
+    target = spiral_->at(fraction);
     target.velocity = (1 / duration) * target.velocity;
   }
   aim_speed_ = norm(target.velocity);

@@ -61,7 +61,7 @@ void decide(benchmark::State& state) {
     const Contact contact = testing::touch(0, s.pose, 0.002);
     packets += sender.encode(tick++, {.objects = {&s, 1}, .contacts = {&contact, 1}})->size();
   }
-  state.counters["packets_share"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
+  state.counters["packets_per_call"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
 }
 BENCHMARK(decide)->Iterations(900'000)->Repetitions(5)->ReportAggregatesOnly();
 
@@ -80,12 +80,12 @@ void encode_update(benchmark::State& state) {
 BENCHMARK(encode_update)->Repetitions(5)->ReportAggregatesOnly();
 
 /// One touched update per tick: the grid level is searched with the haptic rule.
-void encode_touched_update(benchmark::State& state, bool is_eased) {
+void encode_touched_update(benchmark::State& state, bool is_smoothed) {
   SenderOptions options = every_tick();
   options.triggers.reduction = Reduction::dead_reckoning;
   options.triggers.weber_fraction = 0.001;
   SceneSpec spec = testing::spec_of(1);
-  spec.is_eased = is_eased;
+  spec.is_smoothed = is_smoothed;
   auto sender = Sender::create(testing::shared(spec), options).value();
   const auto samples = record(1, 10000);
   std::int64_t tick = 0;
@@ -95,7 +95,7 @@ void encode_touched_update(benchmark::State& state, bool is_eased) {
     const Contact contact = testing::touch(0, s.pose, 0.002);
     packets += sender.encode(tick++, {.objects = {&s, 1}, .contacts = {&contact, 1}})->size();
   }
-  state.counters["packets_share"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
+  state.counters["packets_per_call"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
 }
 BENCHMARK_CAPTURE(encode_touched_update, thesis, false)->Repetitions(5)->ReportAggregatesOnly();
 BENCHMARK_CAPTURE(encode_touched_update, main, true)->Repetitions(5)->ReportAggregatesOnly();
@@ -113,7 +113,7 @@ void encode_choosing_update(benchmark::State& state, const MotionPhysics& physic
     sender.request_key();
     packets += sender.encode(tick++, {.objects = {&s, 1}})->size();
   }
-  state.counters["packets_share"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
+  state.counters["packets_per_call"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
 }
 BENCHMARK_CAPTURE(encode_choosing_update, linear_alone, MotionPhysics{})->Repetitions(5)->ReportAggregatesOnly();
 BENCHMARK_CAPTURE(encode_choosing_update, of_three, MotionPhysics{{0, 0, -0.1}, 0.25})->Repetitions(5)->ReportAggregatesOnly();

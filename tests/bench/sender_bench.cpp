@@ -79,8 +79,8 @@ class Watch {
   void report(benchmark::State& state) {
     if (times_.empty()) return;
     std::ranges::sort(times_);
-    const auto at = [&](double share) {
-      return times_[static_cast<std::size_t>(share * static_cast<double>(times_.size() - 1))];
+    const auto at = [&](double fraction) {
+      return times_[static_cast<std::size_t>(fraction * static_cast<double>(times_.size() - 1))];
     };
     state.counters["p50_us"] = at(0.5);
     state.counters["p99_us"] = at(0.99);

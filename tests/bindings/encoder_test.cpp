@@ -49,7 +49,7 @@ struct Hinge {
     EXPECT_EQ(tactus_scene_builder_deformable(raw, "hinge", vertices.data(), count(), triangles.data(), triangles.size() / 3,
                                               &coding, nullptr),
               TACTUS_OK);
-    EXPECT_EQ(tactus_scene_builder_promise(raw, nullptr, bounds, nullptr, nullptr), TACTUS_OK);
+    EXPECT_EQ(tactus_scene_builder_declare_bounds(raw, nullptr, bounds, nullptr, nullptr), TACTUS_OK);
     tactus_scene* out = nullptr;
     EXPECT_EQ(tactus_scene_builder_build(raw, &out, nullptr), TACTUS_OK);
     return Scene(out);
@@ -207,7 +207,7 @@ TEST(CEncoder, AClusterBeyondTheirCountIsRefused) {
 /// The defaults of both are those of the library, for scenes of all kinds of objects.
 TEST(CEncoder, WhatIsNotAskedForIsCodedAsByTheLibrary) {
   const std::vector<std::uint8_t> bytes = written(make_scene(true));
-  EXPECT_TRUE(parse_scene(bytes).value().scene->is_eased);
+  EXPECT_TRUE(parse_scene(bytes).value().scene->is_smoothed);
   TriMesh sheet;
   sheet.vertices = {{0, 0, 0}, {0.1, 0, 0}, {0.1, 0.1, 0}, {0, 0.1, 0}};
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -215,7 +215,7 @@ TEST(CEncoder, WhatIsNotAskedForIsCodedAsByTheLibrary) {
                                    .rigid("table", {}, Dof::none)
                                    .rigid("cube", {{0, 0, 0.05}, {}})
                                    .deformable("sheet", sheet)
-                                   .promise({}, {})
+                                   .declare_bounds({}, {})
                                    .build()
                                    .value();
   EXPECT_EQ(bytes, write_scene(*expected).value());
@@ -237,7 +237,7 @@ TEST(CEncoder, WhatIsNotAskedForIsCodedAsByTheLibrary) {
   EXPECT_GT(packets, 10u);
 }
 
-/// What is left open depends on the bound that is promised.
+/// What is left open depends on the bound that is declared.
 TEST(CEncoder, NearlyExactMeshesFadeNothing) {
   const Hinge hinge;
   auto coding = filled<tactus_deformable_options_init, tactus_deformable_options>();

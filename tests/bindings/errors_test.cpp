@@ -84,13 +84,13 @@ TEST(CErrors, SceneRefuses) {
 }
 
 TEST(CErrors, BuilderTellsFigures) {
-  const auto refused = [](const tactus_scene_options& options, const tactus_pose* pose, bool promises, const char* rule) {
+  const auto refused = [](const tactus_scene_options& options, const tactus_pose* pose, bool declares_bounds, const char* rule) {
     tactus_scene_builder* raw = nullptr;
     EXPECT_EQ(tactus_scene_builder_create(&options, &raw, nullptr), TACTUS_OK);
     const Builder builder(raw);
     for (const char* name : {"a", "b", "c"}) EXPECT_EQ(tactus_scene_builder_rigid(raw, name, pose, 63, nullptr), TACTUS_OK);
-    if (promises) {
-      EXPECT_EQ(tactus_scene_builder_promise(raw, nullptr, nullptr, nullptr, nullptr), TACTUS_OK);
+    if (declares_bounds) {
+      EXPECT_EQ(tactus_scene_builder_declare_bounds(raw, nullptr, nullptr, nullptr, nullptr), TACTUS_OK);
     }
     tactus_scene* scene = nullptr;
     tactus_error error{};

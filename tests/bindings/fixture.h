@@ -43,7 +43,7 @@ inline Scene make_scene(bool with_sheet = false, const tactus_scene_options* opt
     const std::uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
     EXPECT_EQ(tactus_scene_builder_deformable(raw, "sheet", corners, 4, triangles, 2, nullptr, nullptr), TACTUS_OK);
   }
-  EXPECT_EQ(tactus_scene_builder_promise(raw, nullptr, nullptr, nullptr, nullptr), TACTUS_OK);
+  EXPECT_EQ(tactus_scene_builder_declare_bounds(raw, nullptr, nullptr, nullptr, nullptr), TACTUS_OK);
   tactus_scene* scene = nullptr;
   EXPECT_EQ(tactus_scene_builder_build(raw, &scene, nullptr), TACTUS_OK) << tactus_scene_builder_culprit(raw);
   return Scene(scene);

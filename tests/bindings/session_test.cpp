@@ -130,10 +130,10 @@ TEST(CSession, BringsSceneStatesAndDevice) {
   ASSERT_EQ(tactus_client_status(ends.client.get(), &status, nullptr), TACTUS_OK);
   EXPECT_EQ(status.declaration_bytes, status.declaration_received);
   EXPECT_GT(status.packets_heard, 5u);
-  double share = 0;
-  EXPECT_EQ(tactus_client_force_share(ends.client.get(), 2'000'000, &share, nullptr), TACTUS_OK);
-  EXPECT_GE(share, 0);
-  EXPECT_LE(share, 1);
+  double fraction = 0;
+  EXPECT_EQ(tactus_client_force_fraction(ends.client.get(), 2'000'000, &fraction, nullptr), TACTUS_OK);
+  EXPECT_GE(fraction, 0);
+  EXPECT_LE(fraction, 1);
 }
 
 TEST(CSession, TellsSeatsAndLetsClientsComeBack) {

@@ -140,13 +140,13 @@ TEST_F(CSizes, OfBounds) {
   for (const SizedCall& call : std::vector<SizedCall>{
            {"rigid_bounds", 80, Direction::option, initialised<tactus_rigid_bounds_init, tactus_rigid_bounds>(),
             taking<tactus_rigid_bounds>(
-                [&](auto*b, auto*e) { return tactus_scene_builder_promise(raw, b, nullptr, nullptr, e); })},
+                [&](auto*b, auto*e) { return tactus_scene_builder_declare_bounds(raw, b, nullptr, nullptr, e); })},
            {"deformable_bounds", 40, Direction::option, initialised<tactus_deformable_bounds_init, tactus_deformable_bounds>(),
             taking<tactus_deformable_bounds>(
-                [&](auto*b, auto*e) { return tactus_scene_builder_promise(raw, nullptr, b, nullptr, e); })},
+                [&](auto*b, auto*e) { return tactus_scene_builder_declare_bounds(raw, nullptr, b, nullptr, e); })},
            {"load_bounds", 24, Direction::option, initialised<tactus_load_bounds_init, tactus_load_bounds>(),
             taking<tactus_load_bounds>(
-                [&](auto*b, auto*e) { return tactus_scene_builder_promise(raw, nullptr, nullptr, b, e); })},
+                [&](auto*b, auto*e) { return tactus_scene_builder_declare_bounds(raw, nullptr, nullptr, b, e); })},
            {"rigid_bounds told", 80, Direction::answer, {}, taking<tactus_rigid_bounds>([&](auto*b, auto*e) {
               return tactus_scene_get_rigid_bounds(of, b, e);
             })},

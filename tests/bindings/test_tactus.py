@@ -349,7 +349,7 @@ def test_clusters_of_a_mesh(traces):
         tactus.find_clusters(mesh, trace.shapes[0][1][:2], 65)
     assert refused.value.rule == "R-API-4"
     with tactus.TraceReader(traces / "mesh.mcap") as reader, pytest.raises(TypeError, match="no argument"):
-        reader.scene(eased=1)
+        reader.scene(smoothed=1)
 
 
 @needs_program

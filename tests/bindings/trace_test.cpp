@@ -160,7 +160,7 @@ TEST_F(CTrace, BecomesASceneThatDeclaresBounds) {
   std::vector<std::uint8_t> bytes(size);
   ASSERT_EQ(tactus_trace_scene(trace.get(), &coding, bytes.data(), size, &size, nullptr), TACTUS_OK);
   const auto scene = parse_scene(bytes).value().scene;
-  EXPECT_FALSE(scene->is_eased);
+  EXPECT_FALSE(scene->is_smoothed);
   EXPECT_EQ(scene->deformables.at(0).profile, DeformableProfile::thesis);
   EXPECT_EQ(scene->baseline_span, 7);
   ASSERT_TRUE(scene->bounds && scene->bounds->rigid);

@@ -97,7 +97,7 @@ Scene make_scene(ByteReader& in) {
   for (unsigned objects = in.u8() % 4; objects > 0; --objects) add_rigid(in, builder.get());
   if (in.u8() & 1) add_mesh(in, builder.get());
   const Bounds bounds(in);
-  (void)call(tactus_scene_builder_promise, builder.get(), &bounds.rigid, &bounds.deformable, &bounds.load);
+  (void)call(tactus_scene_builder_declare_bounds, builder.get(), &bounds.rigid, &bounds.deformable, &bounds.load);
   tactus_scene* scene = nullptr;
   const bool built = call(tactus_scene_builder_build, builder.get(), &scene);
   require(built == (scene != nullptr) && tactus_scene_builder_culprit(builder.get()) != nullptr);
@@ -173,7 +173,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!scene) return 0;
   const Bounds bounds(in);
   auto o = filled<tactus_sender_options_init, tactus_sender_options>();
-  change(in, o.reduction, o.baseline, o.first_sequence, o.key_interval, o.visual_share, o.haptic_share, o.layered);
+  change(in, o.reduction, o.baseline, o.first_sequence, o.key_interval, o.visual_fraction, o.haptic_fraction, o.layered);
   o.rigid = &bounds.rigid, o.deformable = &bounds.deformable, o.load = &bounds.load;
   tactus_sender* raw_sender = nullptr;
   if (!call(tactus_sender_create, scene.get(), &o, &raw_sender)) return 0;

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace tactus;
   SceneSpec spec;
   spec.objects.push_back({"o", Dof::all, {}});
-  spec.is_eased = size > 0 && data[0] / 5 % 2 == 1;
+  spec.is_smoothed = size > 0 && data[0] / 5 % 2 == 1;
   if (size > 0 && data[0] / 10 % 2 == 1) spec.motion = {{-9000, 1 << 20, -(1 << 28)}, 1 << 18};
   const bool knows_device = size > 0 && data[0] / 20 % 2 == 1;
   if (knows_device) spec.driven = {{{1075200, 116053, {286331, 286331, 1}, 128, 1049}}};
@@ -36,8 +36,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     RigidState state;
     state.tick = now += static_cast<std::uint16_t>(v[0]) % 3000;
     now += v[0] & 0x70000 ? 0 : 7;  // applied late
-    if (scene->is_eased)
-      state.ease = static_cast<std::uint8_t>(v[0] >> 22 & 7), state.keep = static_cast<std::uint8_t>(v[0] >> 25 & 3);
+    if (scene->is_smoothed)
+      state.smoothing_exp = static_cast<std::uint8_t>(v[0] >> 22 & 7), state.retained = static_cast<std::uint8_t>(v[0] >> 25 & 3);
     if (scene->motion) state.predictor = static_cast<Predictor>((static_cast<std::uint32_t>(v[0]) >> 27) % 3);
     if (knows_device) state.predictor = static_cast<Predictor>(scene->motion ? v[1] & 3 : 3 * (v[1] & 1));
     state.position = {v[1], v[2], v[3]};

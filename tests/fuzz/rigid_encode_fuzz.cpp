@@ -16,7 +16,7 @@ using namespace tactus;
 
 /// Those of a level of detail.
 RigidTriggers widened(RigidTriggers t, std::uint8_t lod) {
-  for (double* bound : {&t.visual_position, &t.visual_rotation, &t.weber_fraction, &t.perceptual_share, &t.cone_angle,
+  for (double* bound : {&t.visual_position, &t.visual_rotation, &t.weber_fraction, &t.perceptual_fraction, &t.cone_angle,
                         &t.fixed_position, &t.fixed_rotation})
     *bound = std::ldexp(*bound, lod);
   return t;
@@ -44,7 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint8_t choice = in.u8();
   spec.baseline_span = static_cast<std::uint8_t>(1 + choice % 64);
   if (choice & 64) spec.motion = {{0, 0, -1285816}, 321454};
-  spec.is_eased = choice >= 128;
+  spec.is_smoothed = choice >= 128;
   if ((choice & 96) == 96) spec.driven = {{{1075200, 116053, {286331, 286331, 286331}, 128, 1049}}};
   spec.objects.push_back({"o", Dof::all, {}});
   const std::uint8_t rule = in.u8();
@@ -54,7 +54,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.triggers.haptic = static_cast<HapticRule>(rule % 5);
   options.triggers.reduction = static_cast<Reduction>(in.u8() % 3);
   options.triggers.weber_fraction = 0.001 * in.u8();
-  options.triggers.perceptual_share = std::min(1.0, 10 * options.triggers.weber_fraction);
+  options.triggers.perceptual_fraction = std::min(1.0, 10 * options.triggers.weber_fraction);
   options.triggers.visual_position = 1e-5 * in.u16();
   options.triggers.visual_rotation = 1e-4 * in.u16();
   options.policy.key_interval = 0.01 * in.u8();

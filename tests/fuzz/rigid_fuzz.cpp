@@ -19,7 +19,7 @@ SharedScene scene(std::uint8_t choice) {
     spec.objects.push_back({"o" + std::to_string(spec.objects.size()), dof, {}});
   if (choice & 4) spec.baseline_span = 5;
   if (choice & 16) spec.motion = {{-9000, 1 << 20, -(1 << 28)}, choice & 32 ? 1 : 1 << 18};
-  spec.is_eased = (choice & 64) != 0;
+  spec.is_smoothed = (choice & 64) != 0;
   if (choice & 128) {
     spec.driven.emplace().bodies.resize(spec.objects.size());
     spec.driven->bodies[0] = {1, 0, {1, 1, 1}, 0, 0};

@@ -40,7 +40,7 @@ inline SceneSpec strip(std::uint8_t choice) {
   return spec;
 }
 
-/// What main promises for each vertex (main_encoder.h) [m].
+/// What main guarantees for each vertex (main_encoder.h) [m].
 inline std::vector<double> strip_bounds(const SceneSpec& spec, const DeformableThresholds& t,
                                         const std::optional<SurfaceTouch>& touch) {
   const DeformableObject& object = spec.deformables[0];

@@ -105,7 +105,7 @@ class Others(unittest.TestCase):
         self.assertEqual(session.remarks(case), "; mended 200 ms after it; bounds up to 2.0 times as wide for 50 % of the time")
 
     def test_tables_of_signals_begin_with_each_user_and_signal(self):
-        base = {"within": "1 mm", "packets": 1, "bytes": 2, "largest_error": 0, "rms_error": 0, "share_of_permitted": 0,
+        base = {"within": "1 mm", "packets": 1, "bytes": 2, "largest_error": 0, "rms_error": 0, "fraction_of_permitted": 0,
                 "samples_over": 0, "time_per_sample_s": 1e-6}
         kinds = [("a", "device"), ("a", "device"), ("a", "force"), ("b", "force")]
         recording = {"seconds": 2, "signals": [base | {"user": user, "signal": signal} for user, signal in kinds]}

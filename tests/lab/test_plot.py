@@ -76,7 +76,7 @@ class Words(unittest.TestCase):
 
     def test_labels_of_axes_keep_their_unit(self):
         self.assertEqual(plot.axis_label("speed [mm/s]"), "speed [mm/s]")
-        self.assertEqual(plot.axis_label("share of the time in contact [%]"), "share of the time in\ncontact [%]")
+        self.assertEqual(plot.axis_label("fraction of the time in contact [%]"), "fraction of the time\nin contact [%]")
         long = plot.axis_label("position of " + 9 * "another " + "cube [mm]")
         self.assertEqual(long.count("\n"), 1)
         self.assertTrue(long.endswith("… [mm]"), long)
@@ -194,7 +194,7 @@ class Looks(unittest.TestCase):
 
     def test_a_logarithmic_axis_without_a_line(self):
         for points in ([], [[0.5, 1], [80, 2]]):
-            fig = self.drawn(run(panel("share [%]", ["a, b"], points))._replace(x_label="round trip [ms]", is_log=True))
+            fig = self.drawn(run(panel("fraction [%]", ["a, b"], points))._replace(x_label="round trip [ms]", is_log=True))
             self.assertEqual((fig.axes[0].get_xscale(), fig.axes[0].get_xlabel()), ("log", "round trip [ms]"))
 
 

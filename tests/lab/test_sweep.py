@@ -111,7 +111,7 @@ class Plans(unittest.TestCase):
             loaded(SMALL.replace('"/traffic/packets"', '"packets"'))
         self.assertRegex(caught.exception.text, r"\.toml:13: measure\.packets: ")
 
-    def test_shares_are_whole(self):
+    def test_shards_are_whole(self):
         import importlib.util
         spec = importlib.util.spec_from_file_location("sweep_script", PROJECT / "lab/sweep.py")
         script = importlib.util.module_from_spec(spec)

@@ -13,13 +13,13 @@ import sys
 import callgrind
 
 KINDS = {
-    "leaning": r"tactus::leaning\(",
-    "easing": r"tactus::(longest_ease|kept_offset)\(",
+    "look-ahead": r"tactus::look_ahead_velocity\(",
+    "smoothing": r"tactus::(longest_smoothing_exp|kept_offset)\(",
     "predictors": r"tactus::PredictorChoice::",
 }
 WANTED = {
     ("--profile", "thesis"): set(),
-    ("--profile", "main"): {"leaning", "easing"},
+    ("--profile", "main"): {"look-ahead", "smoothing"},
     ("--profile", "main", "--no-reduction"): set(),
     ("--profile", "thesis", "--gravity", "9.81", "--friction", "0.3"): {"predictors"},
 }

@@ -28,10 +28,10 @@ def main(arguments):
         print("skipped: instructions of such a build tell nothing")
         return 77
     count = {part: callgrind.instructions("/dev/null", function, arguments[0], STEPS)[0] for part, function in PARTS.items()}
-    share = (count["step"] - count["integrator"]) / count["forces"] if count["forces"] else 1
+    fraction = (count["step"] - count["integrator"]) / count["forces"] if count["forces"] else 1
     print(*(f"{part}: {n / STEPS:.0f} instructions per step" for part, n in count.items()), sep="\n")
-    print(f"guard: {100 * share:.1f} % of the forces, at most {100 * MOST:.0f} %")
-    return 0 if 0 < share <= MOST else 1
+    print(f"guard: {100 * fraction:.1f} % of the forces, at most {100 * MOST:.0f} %")
+    return 0 if 0 < fraction <= MOST else 1
 
 
 if __name__ == "__main__":

@@ -53,7 +53,7 @@ TEST(AllocationFailure, Scenes) {
 
 TEST(AllocationFailure, ScenesFromSiUnits) {
   SceneBuilder builder;
-  builder.rigid("a name too long for a small string").promise({}, {});
+  builder.rigid("a name too long for a small string").declare_bounds({}, {});
   builder.deformable("another name too long for a small string", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
   EXPECT_GT(fail_each(builder,
                       [](SceneBuilder&& b) -> Result<SharedScene> {

@@ -74,7 +74,7 @@ class Walk : public ::testing::TestWithParam<std::tuple<Reduction, HapticRule, d
 TEST_P(Walk, KeepsEveryBoundOnReceiverOutput) {
   SenderOptions options;
   std::tie(options.triggers.reduction, options.triggers.haptic, options.triggers.weber_fraction) = GetParam();
-  options.triggers.perceptual_share = std::min(1.0, options.triggers.weber_fraction / 0.1);
+  options.triggers.perceptual_fraction = std::min(1.0, options.triggers.weber_fraction / 0.1);
   for (const double heartbeat : kIntervals) {
     for (const double key_interval : kIntervals) {
       options.triggers.heartbeat = heartbeat;

@@ -46,8 +46,8 @@ int main(int argc, char** argv) {
   for (const char* name : {"BASELINE", "TICK", "COUNT", "GAP"}) table.magnitude(name);
   table.tree("REASON", 3);
   table.tree("LEVEL", 15);
-  table.tree("EASE", 7);
-  table.tree("KEEP", 3);
+  table.tree("SMOOTHING_EXP", 7);
+  table.tree("RETAINED", 3);
   for (std::size_t kind = 0; kind < 2; ++kind) {
     for (std::size_t context = 0; context < kPoseContexts; ++context) table.magnitude(indexed("POSE", {kind, context}));
     for (std::size_t context = 0; context < kMotionContexts; ++context) table.magnitude(indexed("MOTION", {kind, context}));

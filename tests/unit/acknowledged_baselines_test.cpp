@@ -51,7 +51,7 @@ Delivered deliver(const SharedScene& scene, const SenderOptions& options, const 
   auto sender = Sender::create(scene, options).value();
   auto receiver = Receiver::create(scene).value();
   std::mt19937_64 random(11);
-  const auto chance = [&](double share) { return static_cast<double>(random() >> 11) * 0x1p-53 < share; };
+  const auto chance = [&](double fraction) { return static_cast<double>(random() >> 11) * 0x1p-53 < fraction; };
   std::deque<InFlight> packets;
   std::vector<Ack> acks;
   Delivered out;
@@ -252,8 +252,8 @@ TEST(AcknowledgedBaselines, WhatIsNotAcknowledgedIsSentAgain) {
   EXPECT_EQ(object.until_next(1000), 1) << "the one before is due for longer";
 }
 
-/// Whether an object that is off by this share of its bound is named when another one is.   in   others  that move, too
-bool joins(double share, Baseline baseline, bool waits, std::size_t others = 0) {
+/// Whether an object that is off by this fraction of its bound is named when another one is.   in   others  that move, too
+bool joins(double fraction, Baseline baseline, bool waits, std::size_t others = 0) {
   SceneSpec spec = testing::spec_of(2 + others);
   spec.baseline_span = 8;
   SenderOptions options;
@@ -267,8 +267,8 @@ bool joins(double share, Baseline baseline, bool waits, std::size_t others = 0) 
   const auto encode = [&] { return testing::all(sender.encode(tick++, {samples})).size(); };
   encode();
   sender.set_link({.answer = 1000, .loss = 0, .waits = waits});
-  samples[1].pose.position.x = 1e-3 * share;
-  for (std::size_t i = 0; i < others; ++i) samples[2 + i].pose.position.x = 1e-3 * share;
+  samples[1].pose.position.x = 1e-3 * fraction;
+  for (std::size_t i = 0; i < others; ++i) samples[2 + i].pose.position.x = 1e-3 * fraction;
   EXPECT_EQ(encode(), 0u) << "alone it causes none";
   samples[0].pose.position.x += 0.01;
   EXPECT_EQ(encode(), 1u);

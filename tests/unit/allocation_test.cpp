@@ -29,7 +29,7 @@ TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
   constexpr std::size_t kObjects = 20;
   for (const Interpolation way : {Interpolation::linear, Interpolation::none, Interpolation::playout}) {
     SceneSpec spec = testing::spec_of(kObjects);
-    spec.is_eased = way != Interpolation::linear;
+    spec.is_smoothed = way != Interpolation::linear;
     spec.motion = {{0, 0, -1285816}, 321454};
     const SharedScene scene = testing::shared(spec);
     auto sender = Sender::create(scene, {.policy = {.key_interval = 0.2}}).value();

@@ -298,10 +298,10 @@ TEST(Bend, WithoutVelocitiesTheWayIsStraight) {
   const RigidState a = along(400, false), b = along(500, false);
   const RigidPose from{a.position, a.rotation}, to{b.position, b.rotation};
   for (std::int64_t tick = 400; tick < 500; ++tick) {
-    const double share = static_cast<double>(tick - 400) / 100;
+    const double fraction = static_cast<double>(tick - 400) / 100;
     const RigidPose shown = bend(*scene, a, b, tick);
-    EXPECT_NEAR(distance(from, shown), share * distance(from, to), 1e-6);
-    EXPECT_NEAR(angle(from, shown), share * angle(from, to), 1e-6);
+    EXPECT_NEAR(distance(from, shown), fraction * distance(from, to), 1e-6);
+    EXPECT_NEAR(angle(from, shown), fraction * angle(from, to), 1e-6);
   }
 }
 

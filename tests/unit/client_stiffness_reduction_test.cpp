@@ -49,7 +49,7 @@ TEST_F(Pressing, WhoGoesInFeelsLessByWhatTheObjectWouldHaveFollowed) {
   EXPECT_NEAR(reduced(0.02, 80), kCoupling * (1 - kFollows * 0.008 / 0.02), 1e-9);
 }
 
-/// The object did not follow yet: what the client sees is the device's whole way, of which the server would see a share.
+/// The object did not follow yet: what the client sees is the device's whole way, of which the server would see a fraction.
 TEST_F(Pressing, AtFirstTheObjectIsAsSoftAsBothSpringsTogether) {
   go(1e-4, 50);
   EXPECT_NEAR(reduced(0.004, 80), kLeast, 1e-9);
@@ -131,7 +131,7 @@ TEST_F(Pushing, AtConstantSpeedTheForceIsThatWithoutDelay) {
   EXPECT_NEAR(k, 207, 1);
 }
 
-/// While it gains speed it takes more than it resists with: the share of that which 4.30 leaves.
+/// While it gains speed it takes more than it resists with: the fraction of that which 4.30 leaves.
 TEST_F(Pushing, WhoSetsAMassInMotionFeelsSomeOfItsInertia) {
   go(1e-4, 300);
   const double stretch = (kFriction + 0.6) / kStiffness + 0.005;

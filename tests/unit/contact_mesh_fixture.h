@@ -110,8 +110,8 @@ inline TriMesh inside_out(TriMesh mesh) {
   return mesh;
 }
 
-/// Bumps of all sizes on a sphere, up to `share` of its radius.
-inline TriMesh bumpy_ball(double radius, unsigned times, double share, std::uint64_t seed) {
+/// Bumps of all sizes on a sphere, up to `fraction` of its radius.
+inline TriMesh bumpy_ball(double radius, unsigned times, double fraction, std::uint64_t seed) {
   TriMesh mesh = ball(radius, times);
   sim::Random random(seed);
   std::array<Vec3, 12> waves;
@@ -119,7 +119,7 @@ inline TriMesh bumpy_ball(double radius, unsigned times, double share, std::uint
   for (Vec3& v : mesh.vertices) {
     double sum = random.uniform(-0.02, 0.02);
     for (const Vec3& wave : waves) sum += std::sin(dot(wave, (1 / radius) * v)) / 12;
-    v = (1 + share * sum) * v;
+    v = (1 + fraction * sum) * v;
   }
   return mesh;
 }

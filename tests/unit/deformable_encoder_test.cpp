@@ -318,8 +318,8 @@ TEST(DeformableEncoder, RefusesOptions) {
   EXPECT_EQ(rule([](DeformableOptions& o) { o.thresholds.visual = std::nan(""); }), "R-API-4");
   EXPECT_EQ(rule([](DeformableOptions& o) { o.thresholds.weber_fraction = -0.1; }), "R-API-4");
   EXPECT_EQ(rule([](DeformableOptions& o) { o.thresholds.depth_floor = std::nan(""); }), "R-API-4");
-  EXPECT_EQ(rule([](DeformableOptions& o) { o.haptic_share = 0; }), "R-API-4");
-  EXPECT_EQ(rule([](DeformableOptions& o) { o.visual_share = 1.5; }), "R-API-4");
+  EXPECT_EQ(rule([](DeformableOptions& o) { o.haptic_fraction = 0; }), "R-API-4");
+  EXPECT_EQ(rule([](DeformableOptions& o) { o.visual_fraction = 1.5; }), "R-API-4");
 }
 
 TEST(DeformableEncoder, KeyPacketsBuildOnTheInitialState) {

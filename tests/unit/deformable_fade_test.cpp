@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Corrections that fade, shares of the bounds and sets of weights: bounds hold, both ends agree, and what rests costs nothing.
+/// Corrections that fade, fractions of the bounds and sets of weights: bounds hold, both ends agree, and what rests costs nothing.
 #include <gtest/gtest.h>
 
 #include <tactus/tactus.h>
@@ -32,9 +32,9 @@ SharedScene scene_of(const TriMesh& mesh, const Coding& coding, std::uint32_t ti
   return testing::shared(std::move(spec));
 }
 
-SenderOptions options(std::optional<double> share = {}, bool layered = false) {
+SenderOptions options(std::optional<double> fraction = {}, bool layered = false) {
   return {.triggers = {},
-          .deformable = {.thresholds = kThresholds, .visual_share = share, .haptic_share = share, .layered = layered},
+          .deformable = {.thresholds = kThresholds, .visual_fraction = fraction, .haptic_fraction = fraction, .layered = layered},
           .policy = {.key_interval = 0}};
 }
 
@@ -48,10 +48,10 @@ struct Walk {
   Sent moving, settling, resting;
 };
 
-Walk walked(const Coding& coding, std::int64_t frames, std::optional<double> share = {}, std::uint32_t tick_rate = 60) {
+Walk walked(const Coding& coding, std::int64_t frames, std::optional<double> fraction = {}, std::uint32_t tick_rate = 60) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   DentedSheet sheet(mesh, kSquares);
-  SheetEnds ends(scene_of(mesh, coding, tick_rate), options(share, coding.layered));
+  SheetEnds ends(scene_of(mesh, coding, tick_rate), options(fraction, coding.layered));
   Walk out;
   SheetFrame frame;
   for (std::int64_t k = 0; k < 3 * frames; ++k) {
@@ -93,15 +93,15 @@ TEST(DeformableFade, BoundsHoldInLayers) {
   }
 }
 
-TEST(DeformableShares, ErrorsReachTheBoundBeforeAPacketGoes) {
+TEST(DeformableFractions, ErrorsReachTheBoundBeforeAPacketGoes) {
   const Walk whole = walked({}, 300, 1.0), half = walked({}, 300, 0.5);
   EXPECT_EQ(whole.moving.broken + half.moving.broken, 0U);
   EXPECT_LT(half.moving.packets, whole.moving.packets);
   EXPECT_GT(half.moving.worst, 0.9 * kThresholds.visual);
 }
 
-TEST(DeformableShares, DefaultLeavesAMarginWhereShapesComeFast) {
-  const auto bytes = [](std::uint32_t rate, std::optional<double> share) { return walked({}, 120, share, rate).moving.bytes; };
+TEST(DeformableFractions, DefaultLeavesAMarginWhereShapesComeFast) {
+  const auto bytes = [](std::uint32_t rate, std::optional<double> fraction) { return walked({}, 120, fraction, rate).moving.bytes; };
   EXPECT_EQ(bytes(60, {}), bytes(60, 1.0));
   EXPECT_EQ(bytes(100, {}), bytes(100, 1.0));
   EXPECT_EQ(bytes(101, {}), bytes(101, 0.7));

@@ -30,15 +30,15 @@ class Drawn {
 TEST(Elementary, IsAsExactAsItSays) {
   Drawn drawn;
   for (int i = 0; i < 200'000; ++i) {
-    const double turn = drawn(-100, 100), x = drawn(-2, 2), y = drawn(-2, 2), share = drawn(-1, 1), e = drawn(-700, 700);
+    const double turn = drawn(-100, 100), x = drawn(-2, 2), y = drawn(-2, 2), small = drawn(-1, 1), e = drawn(-700, 700);
     ASSERT_NEAR(sine(turn), std::sin(turn), 3e-16) << turn;
     ASSERT_NEAR(cosine(turn), std::cos(turn), 3e-16) << turn;
     ASSERT_NEAR(sine(1e4 * turn), std::sin(1e4 * turn), 1e-15) << 1e4 * turn;
     ASSERT_LE(units(angle_of(y, x), std::atan2(y, x)), 3) << y << ' ' << x;
-    ASSERT_LE(units(arc_sine(share), std::asin(share)), 3) << share;
-    ASSERT_LE(units(arc_cosine(share), std::acos(share)), 3) << share;
+    ASSERT_LE(units(arc_sine(small), std::asin(small)), 3) << small;
+    ASSERT_LE(units(arc_cosine(small), std::acos(small)), 3) << small;
     ASSERT_LE(units(exponential(e), std::exp(e)), 3) << e;
-    ASSERT_LE(units(exponential_less_one(share), std::expm1(share)), 3) << share;
+    ASSERT_LE(units(exponential_less_one(small), std::expm1(small)), 3) << small;
     const double positive = std::exp(e);
     ASSERT_LE(units(logarithm(positive), std::log(positive)), 3) << positive;
     ASSERT_LE(units(power(std::abs(x), y), std::pow(std::abs(x), y)), 3 + 2 * std::abs(y * std::log(std::abs(x))))
@@ -73,9 +73,9 @@ TEST(Elementary, GivesTheSameBitsEverywhere) {
   Drawn drawn;
   std::uint64_t hash = 0xcbf29ce484222325;
   for (int i = 0; i < 10'000; ++i) {
-    const double a = drawn(-30, 30), b = drawn(-30, 30), share = drawn(-1, 1), positive = drawn(0, 100);
-    for (const double value : std::array{sine(a), cosine(a), angle_of(a, b), arc_sine(share), arc_cosine(share), exponential(a),
-                                         exponential_less_one(share), logarithm(positive), power(positive, share)}) {
+    const double a = drawn(-30, 30), b = drawn(-30, 30), small = drawn(-1, 1), positive = drawn(0, 100);
+    for (const double value : std::array{sine(a), cosine(a), angle_of(a, b), arc_sine(small), arc_cosine(small), exponential(a),
+                                         exponential_less_one(small), logarithm(positive), power(positive, small)}) {
       hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3;
     }
   }

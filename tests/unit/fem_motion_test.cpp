@@ -208,7 +208,7 @@ TEST(FemMotion, AtALowRateTheMembraneMovesAsWhenItIsSolvedTightly) {
   EXPECT_GT((solved - exact).norm(), error) << "sub-steps are said to err less";
 }
 
-/// What 400 steps of a clamped strip that its weight and a pull bend gain without cause, as a share of the work done.
+/// What 400 steps of a clamped strip that its weight and a pull bend gain without cause, as a fraction of the work done.
 double gained(const IntegratorOptions& options, double mass_damping, double stiffness_damping) {
   FemOptions object;
   object.materials = {{1e4, 0.3, 1000}};

@@ -48,7 +48,7 @@ struct Manufactured {
 /// Points and weights on the reference tetrahedron, sum 1/6, exact for polynomials of degree 5: Gauss-Legendre in collapsed
 /// coordinates.
 struct QuadraturePoint {
-  std::array<double, 4> shares;  // of the corners
+  std::array<double, 4> barycentric;
   double weight;
 };
 std::vector<QuadraturePoint> quadrature() {
@@ -74,15 +74,15 @@ Eigen::Vector3d at(const TetMesh& mesh, std::uint32_t vertex) {
   return {p.x, p.y, p.z};
 }
 
-/// Calls visit(tet, point, shares of corners, volume weight) at every quadrature point.
+/// Calls visit(tet, point, barycentric coordinates, volume weight) at every quadrature point.
 template <class Visit>
 void integrate(const TetMesh& mesh, Visit&& visit) {
   const auto rule = quadrature();
   for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
     for (const QuadraturePoint& q : rule) {
       Eigen::Vector3d p = Eigen::Vector3d::Zero();
-      for (std::size_t i = 0; i < 4; ++i) p += q.shares[i] * at(mesh, mesh.tets[e][i]);
-      visit(mesh.tets[e], p, q.shares, 6 * volume(mesh, e) * q.weight);
+      for (std::size_t i = 0; i < 4; ++i) p += q.barycentric[i] * at(mesh, mesh.tets[e][i]);
+      visit(mesh.tets[e], p, q.barycentric, 6 * volume(mesh, e) * q.weight);
     }
   }
 }
@@ -110,9 +110,9 @@ FieldError manufactured_error(std::uint32_t cells) {
   EXPECT_TRUE(model);
 
   Eigen::VectorXd f = Eigen::VectorXd::Zero(model->size()), u = f;
-  integrate(mesh, [&](const Tet& tet, const Eigen::Vector3d& p, const std::array<double, 4>& shares, double weight) {
+  integrate(mesh, [&](const Tet& tet, const Eigen::Vector3d& p, const std::array<double, 4>& barycentric, double weight) {
     const Eigen::Vector3d b = exact.body_force(p);
-    for (std::size_t i = 0; i < 4; ++i) f.segment<3>(3 * Eigen::Index{tet[i]}) += weight * shares[i] * b;
+    for (std::size_t i = 0; i < 4; ++i) f.segment<3>(3 * Eigen::Index{tet[i]}) += weight * barycentric[i] * b;
   });
   SparseMatrix stiffness;
   model->stiffness(u, stiffness);
@@ -126,9 +126,9 @@ FieldError manufactured_error(std::uint32_t cells) {
 
   FieldError error;
   double size = 0, slope = 0;
-  integrate(mesh, [&](const Tet& tet, const Eigen::Vector3d& p, const std::array<double, 4>& shares, double weight) {
+  integrate(mesh, [&](const Tet& tet, const Eigen::Vector3d& p, const std::array<double, 4>& barycentric, double weight) {
     Eigen::Vector3d found = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < 4; ++i) found += shares[i] * u.segment<3>(3 * Eigen::Index{tet[i]});
+    for (std::size_t i = 0; i < 4; ++i) found += barycentric[i] * u.segment<3>(3 * Eigen::Index{tet[i]});
     error.l2 += weight * (found - exact.displacement(p)).squaredNorm();
     size += weight * exact.displacement(p).squaredNorm();
     error.h1 += weight * (gradient(mesh, tet, u) - exact.gradient(p)).squaredNorm();
@@ -142,7 +142,7 @@ TEST(FemSpace, QuadratureIntegratesWhatItClaims) {
   double volume_sum = 0, moment = 0;
   for (const QuadraturePoint& q : quadrature()) {
     volume_sum += q.weight;
-    moment += q.weight * q.shares[1] * q.shares[1] * q.shares[2] * q.shares[3] * q.shares[3];
+    moment += q.weight * q.barycentric[1] * q.barycentric[1] * q.barycentric[2] * q.barycentric[3] * q.barycentric[3];
   }
   EXPECT_NEAR(volume_sum, 1.0 / 6, 1e-15);
   EXPECT_NEAR(moment, 4.0 / 40'320, 1e-17);
@@ -168,14 +168,14 @@ TEST(FemSpace, AManufacturedSolutionConvergesWithOrderTwoAndItsGradientWithOrder
   EXPECT_NEAR(h1_order, 1, 0.1);
 }
 
-/// Shares of the deflection by Timoshenko's formula that a mesh allows.
-double linear_share(int refinement, double poisson) {
+/// Fractions of the deflection by Timoshenko's formula that a mesh allows.
+double linear_fraction(int refinement, double poisson) {
   const auto scene = study::space_scene("cantilever", refinement, poisson);
   const auto result = study::static_deflection(*scene);
   EXPECT_TRUE(result);
   return result->deflection / study::timoshenko_deflection(1, 0.2, 0.2, scene->material);
 }
-double quadratic_share(int refinement, double poisson) {
+double quadratic_fraction(int refinement, double poisson) {
   const auto scene = study::space_scene("cantilever", refinement, poisson);
   const auto result = study::quadratic_static_deflection(*scene);
   EXPECT_TRUE(result);
@@ -184,14 +184,14 @@ double quadratic_share(int refinement, double poisson) {
 
 TEST(FemSpace, ACantileverConvergesToBeamTheory) {
   for (const double poisson : {0.3, 0.45}) {
-    std::printf("nu %.2f\n  tets  share of Timoshenko  order\n", poisson);
-    double share = 0, order = 0;
+    std::printf("nu %.2f\n  tets  fraction of Timoshenko  order\n", poisson);
+    double fraction = 0, order = 0;
     for (const int refinement : {1, 2, 4, 8}) {
-      const double before = share, order_before = order;
-      share = linear_share(refinement, poisson);
-      if (refinement > 1) order = std::log2((1 - before) / (1 - share));
-      std::printf("%6d  %19.3f  %5.2f\n", 30 * refinement * refinement * refinement, share, order);
-      EXPECT_GT(share, before);
+      const double before = fraction, order_before = order;
+      fraction = linear_fraction(refinement, poisson);
+      if (refinement > 1) order = std::log2((1 - before) / (1 - fraction));
+      std::printf("%6d  %19.3f  %5.2f\n", 30 * refinement * refinement * refinement, fraction, order);
+      EXPECT_GT(fraction, before);
       EXPECT_GE(order, order_before) << "on the way to 2";
     }
     EXPECT_GT(order, 1);
@@ -206,25 +206,25 @@ std::pair<double, double> limit_of(double coarse, double middle, double fine) {
 
 TEST(FemSpace, QuadraticElementsReachTheLimitOfLinearOnes) {
   for (const double poisson : {0.3, 0.45}) {
-    std::array<double, 3> shares{};
-    for (std::size_t level = 0; level < 3; ++level) shares[level] = quadratic_share(1 << level, poisson);
-    const auto [limit, uncertainty] = limit_of(shares[0], shares[1], shares[2]);
-    std::printf("nu %.2f: %.4f %.4f %.4f of Timoshenko, limit %.4f +- %.4f\n", poisson, shares[0], shares[1], shares[2], limit,
+    std::array<double, 3> fractions{};
+    for (std::size_t level = 0; level < 3; ++level) fractions[level] = quadratic_fraction(1 << level, poisson);
+    const auto [limit, uncertainty] = limit_of(fractions[0], fractions[1], fractions[2]);
+    std::printf("nu %.2f: %.4f %.4f %.4f of Timoshenko, limit %.4f +- %.4f\n", poisson, fractions[0], fractions[1], fractions[2], limit,
                 uncertainty);
     EXPECT_LT(uncertainty, 2e-3);
     // The clamp keeps the end face from contracting sideways, so the solid is a little stiffer than the beam.
     EXPECT_LT(limit, 1);
     EXPECT_GT(limit, 0.95);
-    EXPECT_LT(linear_share(8, poisson), shares[1]) << "linear elements lock";
+    EXPECT_LT(linear_fraction(8, poisson), fractions[1]) << "linear elements lock";
   }
 }
 
 TEST(FemSpace, LinearTetrahedraLockAsMuchAsOthersMeasured) {
   // 1920 tetrahedra of the same division, computed by another program.
-  EXPECT_NEAR(linear_share(4, 0.3), 0.782, 5e-4);
-  EXPECT_NEAR(linear_share(4, 0.45), 0.588, 5e-4);
-  EXPECT_NEAR(linear_share(4, 0.49), 0.294, 5e-4);
-  EXPECT_NEAR(linear_share(4, 0.499), 0.077, 5e-4);
+  EXPECT_NEAR(linear_fraction(4, 0.3), 0.782, 5e-4);
+  EXPECT_NEAR(linear_fraction(4, 0.45), 0.588, 5e-4);
+  EXPECT_NEAR(linear_fraction(4, 0.49), 0.294, 5e-4);
+  EXPECT_NEAR(linear_fraction(4, 0.499), 0.077, 5e-4);
 }
 
 }  // namespace

@@ -74,12 +74,12 @@ const Wrong kWrongs[] = {
 /// One of ten becomes what it must not be, for 100 ticks, and comes back: the others keep their bounds at every tick, it is shown where it was
 /// last within its own, at rest, and named; from the first good tick on its bounds hold again.
 TEST(Held, OneBadObjectDoesNotStopTheOthers) {
-  for (const bool is_eased : {false, true}) {
+  for (const bool is_smoothed : {false, true}) {
     SceneSpec spec = testing::spec_of(Roundabout::kObjects);
     spec.tick_rate = 60;
     spec.max_extrapolation = 120;
-    spec.is_eased = is_eased;
-    if (is_eased) spec.motion = {{0, 0, -1285816}, 321454};
+    spec.is_smoothed = is_smoothed;
+    if (is_smoothed) spec.motion = {{0, 0, -1285816}, 321454};
     spec.objects[4].dof = Dof::x | Dof::y | Dof::z;
     const SharedScene scene = testing::shared(std::move(spec));
     for (const Wrong& wrong : kWrongs) {
@@ -119,7 +119,7 @@ TEST(Held, OneBadObjectDoesNotStopTheOthers) {
             before = shown;
           }
         }
-        EXPECT_EQ(over, 0u) << wrong.rule << (is_eased ? " eased" : "") << (names_moved ? " named" : "");
+        EXPECT_EQ(over, 0u) << wrong.rule << (is_smoothed ? " smoothed" : "") << (names_moved ? " named" : "");
         EXPECT_EQ(moved_while_held, 0u) << wrong.rule;
       }
     }

@@ -53,10 +53,10 @@ TEST(IntermediateModel, VerticesGoStraightToTheNewShapeInOnePeriod) {
   scene.update();
   for (int tick = 1; tick <= kTicks + 3; ++tick) {
     scene.model.move({0.001, 0.002, 0.02});
-    const double share = std::min(1.0, static_cast<double>(tick) / kTicks);
+    const double fraction = std::min(1.0, static_cast<double>(tick) / kTicks);
     for (const std::uint32_t t : scene.model.triangles()) {
       for (const std::uint32_t v : scene.body.mesh.triangles[t]) {
-        const Vec3 expected = old[v] + share * (scene.body.mesh.vertices[v] - old[v]);
+        const Vec3 expected = old[v] + fraction * (scene.body.mesh.vertices[v] - old[v]);
         ASSERT_LT(norm(scene.model.vertices()[v] - expected), 1e-15);
       }
     }

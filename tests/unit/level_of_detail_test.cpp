@@ -21,11 +21,11 @@ namespace {
 constexpr double kFull = 0.5, kReach = 6;           // [m]
 constexpr double kBound = 1e-3, kTurnBound = 0.02;  // [m, rad]
 
-SharedScene world(std::size_t objects, bool is_eased = true) {
+SharedScene world(std::size_t objects, bool is_smoothed = true) {
   SceneBuilder builder(1000);
   for (std::size_t i = 0; i < objects; ++i)
     builder.rigid("body " + std::to_string(i), {{static_cast<double>(i % 20), static_cast<double>(i / 20), 0}, {}});
-  return builder.rigid_profile(is_eased ? RigidProfile::main : RigidProfile::thesis)
+  return builder.rigid_profile(is_smoothed ? RigidProfile::main : RigidProfile::thesis)
       .interest(kFull, kReach)
       .baselines(64)
       .build()
@@ -170,9 +170,9 @@ struct Judged {
 };
 
 /// The bounds of the level that is told hold in every tick, and the level is that of the distance.
-Judged judge(Baseline baseline, bool is_eased, bool looks, std::uint64_t seed) {
+Judged judge(Baseline baseline, bool is_smoothed, bool looks, std::uint64_t seed) {
   constexpr std::size_t kObjects = 140;
-  const SharedScene scene = world(kObjects, is_eased);
+  const SharedScene scene = world(kObjects, is_smoothed);
   Sender sender = Sender::create(scene, options_of(baseline)).value();
   Receiver receiver = Receiver::create(scene).value();
   World of(kObjects, seed);
@@ -214,8 +214,8 @@ Judged judge(Baseline baseline, bool is_eased, bool looks, std::uint64_t seed) {
 
 TEST(LevelsOfDetail, BoundsOfTheLevelHoldInEveryTick) {
   for (const Baseline baseline : {Baseline::previous, Baseline::acknowledged})
-    for (const bool is_eased : {false, true}) {
-      const Judged all = judge(baseline, is_eased, false, 5), near = judge(baseline, is_eased, true, 5);
+    for (const bool is_smoothed : {false, true}) {
+      const Judged all = judge(baseline, is_smoothed, false, 5), near = judge(baseline, is_smoothed, true, 5);
       EXPECT_EQ(all.told[0], 140u * 4000) << "who does not say from where it looks is told of all in full";
       for (const std::size_t lod : {0u, 1u, 2u, 3u, 4u, 7u}) EXPECT_GT(near.told[lod], 1000u) << lod;
       EXPECT_LT(2 * near.bytes, all.bytes);
@@ -248,7 +248,7 @@ TEST(LevelsOfDetail, AKeyPacketNamesWhatIsOfInterestAlone) {
 }
 
 /// Who begins with a key packet has not shown what was out of interest then: an update must not lead over from there.
-TEST(LevelsOfDetail, WhatEntersIsNotEasedFromWhatNotEverybodyHasShown) {
+TEST(LevelsOfDetail, WhatEntersIsNotSmoothedFromWhatNotEverybodyHasShown) {
   const SharedScene scene = world(2);
   Sender sender = Sender::create(scene, options_of(Baseline::previous)).value();
   Receiver late = Receiver::create(scene).value();

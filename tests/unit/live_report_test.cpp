@@ -43,7 +43,7 @@ TEST(LiveReport, EachWayToNoSessionHasARemedyOfItsOwn) {
   EXPECT_EQ(failure_of({.server = "a:1", .ended = {}}).text, "a:1: no session: interrupted");
 }
 
-TEST(LiveReport, ProgressIsAShareAndATime) {
+TEST(LiveReport, ProgressIsAFractionAndATime) {
   EXPECT_EQ(progress_text(0, 0, 0), "receiving the scene: 0 % of 0.0 kB");
   EXPECT_EQ(progress_text(0, 10'000, 5'000'000), "receiving the scene: 0 % of 10.0 kB");
   EXPECT_EQ(progress_text(2500, 10'000, 5'000'000), "receiving the scene: 25 % of 10.0 kB, 15 s left");

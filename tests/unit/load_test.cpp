@@ -54,7 +54,7 @@ SharedScene make_scene(std::uint8_t span = 1) {
       .value();
 }
 
-/// How far a receiver is off, as a share of the bound.
+/// How far a receiver is off, as a fraction of the bound.
 double worst(const Receiver& receiver, const Pushed& world, std::int64_t tick, const LoadThresholds& bound = {}) {
   double out = 0;
   for (const std::uint32_t object : {0u, 2u}) {
@@ -214,7 +214,7 @@ TEST(Loads, WidenWithTheOtherBounds) {
 
 TEST(Loads, ADeclarationSurvivesTheWayThroughBytes) {
   SceneBuilder builder;
-  builder.rigid("a").loads({.force_exp = 7, .users = 3}).promise({}, {}, {.weber_fraction = 0.2, .force_floor = 1});
+  builder.rigid("a").loads({.force_exp = 7, .users = 3}).declare_bounds({}, {}, {.weber_fraction = 0.2, .force_floor = 1});
   const SharedScene scene = builder.build().value();
   const auto parsed = parse_scene(*write_scene(*scene)).value();
   EXPECT_EQ(parsed.scene->loads, scene->loads);

@@ -39,7 +39,7 @@ DeformableObject object_of(const TriMesh& mesh, std::uint8_t modes, std::vector<
   return out;
 }
 
-/// Share of a vector's square that lies outside the span of the modes.
+/// Fraction of a vector's square that lies outside the span of the modes.
 double outside(const ModeBasis& basis, std::vector<double> vector) {
   const std::size_t size = vector.size();
   const auto product = [&](const auto& a, const auto& b) {
@@ -167,34 +167,34 @@ DeformableObject halves(std::uint8_t blend, std::uint32_t squares = 8) {
   return out;
 }
 
-/// Sum of the first function over the clusters, which is the share [x 2^-11].
-int whole(std::span<const ClusterShare> shares) {
+/// Sum of the first function over the clusters, which is the weight [x 2^-11].
+int whole(std::span<const ClusterEntry> entries) {
   int sum = 0;
-  for (const ClusterShare& share : shares) sum += share.values[0];
+  for (const ClusterEntry& entry : entries) sum += entry.values[0];
   return sum;
 }
 
 TEST(ClusterBasis, GivesEachVertexToItsClusterAlone) {
   const DeformableObject object = halves(0);
   const ModeBasis basis = cluster_basis(object);
-  ASSERT_EQ(basis.shares.size(), object.rest.size());
+  ASSERT_EQ(basis.cluster_entries.size(), object.rest.size());
   ASSERT_EQ(basis.steps.size(), 24U);
   for (std::size_t v = 0; v < object.rest.size(); ++v) {
-    ASSERT_EQ(basis.shares[v].size(), 1U);
-    EXPECT_EQ(basis.shares[v][0].cluster, object.cluster_basis.clusters[v]);
-    EXPECT_EQ(basis.shares[v][0].values[0], ModeBasis::kMaxEntry);
+    ASSERT_EQ(basis.cluster_entries[v].size(), 1U);
+    EXPECT_EQ(basis.cluster_entries[v][0].cluster, object.cluster_basis.clusters[v]);
+    EXPECT_EQ(basis.cluster_entries[v][0].values[0], ModeBasis::kMaxEntry);
   }
   EXPECT_GE(*std::ranges::min_element(basis.steps), 1);
 }
 
-TEST(ClusterBasis, SharesAddToTheWholeAndReachAsFarAsTheyAreBlended) {
+TEST(ClusterBasis, WeightsAddToTheWholeAndReachAsFarAsTheyAreBlended) {
   for (const std::uint8_t blend : {std::uint8_t{1}, std::uint8_t{3}}) {
     const DeformableObject object = halves(blend, 30);
     const ModeBasis basis = cluster_basis(object);
     std::size_t mixed = 0;
     for (std::size_t v = 0; v < object.rest.size(); ++v) {
-      EXPECT_NEAR(whole(basis.shares[v]), ModeBasis::kMaxEntry, 1) << v;
-      mixed += basis.shares[v].size() > 1 ? 1u : 0u;
+      EXPECT_NEAR(whole(basis.cluster_entries[v]), ModeBasis::kMaxEntry, 1) << v;
+      mixed += basis.cluster_entries[v].size() > 1 ? 1u : 0u;
     }
     EXPECT_EQ(mixed, 2u * blend * 31u);  // so many columns of vertices on each side of the border
   }
@@ -205,14 +205,14 @@ TEST(ClusterBasis, FunctionsAreOrthogonalAndZeroWhereTheClusterIsFlat) {
   DeformableObject flat = halves(0);
   for (auto& p : flat.rest) p[2] = 1234;
   const ModeBasis basis = cluster_basis(flat);
-  for (const ClusterShare& share : basis.shares.items) EXPECT_EQ(share.values[3], 0);
+  for (const ClusterEntry& entry : basis.cluster_entries.items) EXPECT_EQ(entry.values[3], 0);
   DeformableObject curved = halves(0);
   for (auto& p : curved.rest) p[2] = (p[0] >> 4) * (p[1] >> 10);
   const ModeBasis bent = cluster_basis(curved);
   std::array<std::array<double, 4>, 4> products{};
-  for (const ClusterShare& share : bent.shares.items)
-    for (std::size_t i = 0; share.cluster == 1 && i < 4; ++i)
-      for (std::size_t j = 0; j < 4; ++j) products[i][j] += double{1} * share.values[i] * share.values[j];
+  for (const ClusterEntry& entry : bent.cluster_entries.items)
+    for (std::size_t i = 0; entry.cluster == 1 && i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j) products[i][j] += double{1} * entry.values[i] * entry.values[j];
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_GT(products[i][i], 0);
     for (std::size_t j = 0; j < i; ++j) EXPECT_LT(std::abs(products[i][j]), 1e-3 * std::sqrt(products[i][i] * products[j][j]));
@@ -236,7 +236,7 @@ TEST(ClusterBasis, OfVerticesInOnePlaceOrAloneIsFinite) {
   EXPECT_EQ(basis.steps.size(), 768U);
   EXPECT_GE(*std::ranges::min_element(basis.steps), 1);
   for (std::size_t v = 0; v < 300; ++v)
-    for (const ClusterShare& share : basis.shares[v]) EXPECT_EQ(share.values[1], 0);
+    for (const ClusterEntry& entry : basis.cluster_entries[v]) EXPECT_EQ(entry.values[1], 0);
 }
 
 // ==== deformable motion clusters ====

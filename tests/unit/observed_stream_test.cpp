@@ -58,7 +58,7 @@ class ObservedStreamTest : public ::testing::Test {
     scene_.name = "<test>";
     scene_.shapes = {{"objects", nlohmann::ordered_json::array()}};
     auto builder = scene_builder(scene_.info, tick(0).frame);
-    scene_.declared = builder->promise(RigidTriggers{}, DeformableThresholds{}).baselines(64).build().value();
+    scene_.declared = builder->declare_bounds(RigidTriggers{}, DeformableThresholds{}).baselines(64).build().value();
     stream_ = ObservedStream::create(scene_, tick(0)).value();
   }
   static ObservedTick tick(std::int64_t number) {

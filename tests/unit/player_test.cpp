@@ -94,7 +94,7 @@ TEST(Player, AFileThatWasCutPlaysToItsLastWholePacket) {
 
 TEST(Player, OptionsAndLimitsAreTheReceivers) {
   const Bytes file = jumping_stream();
-  EXPECT_STREQ(Player::open(file, {.replica = {.share = 2}, .limits = {}}).error().rule, "R-API-4");
+  EXPECT_STREQ(Player::open(file, {.replica = {.fraction = 2}, .limits = {}}).error().rule, "R-API-4");
   EXPECT_STREQ(Player::open(file, {.replica = {}, .limits = {.objects = 1}}).error().rule, "R-STR-14");
   EXPECT_EQ(Player::open(std::span(file).first(10)).error().code, Errc::truncated);
   auto narrow = Player::open(file, {.replica = {}, .limits = {.packet_bytes = 5}}).value();

@@ -252,7 +252,7 @@ TEST(Receiver, OptionsAndScenesBeyondTheLimitsAreRefused) {
     return receiver ? std::string_view() : std::string_view(receiver.error().rule);
   };
   EXPECT_EQ(rule({}), "");
-  EXPECT_EQ(rule({.replica = {.share = 0}, .limits = {}}), "R-API-4");
+  EXPECT_EQ(rule({.replica = {.fraction = 0}, .limits = {}}), "R-API-4");
   EXPECT_EQ(rule({.replica = {}, .limits = {.objects = 5}}), "R-STR-14");
   EXPECT_EQ(rule({.replica = {}, .limits = {.vertices = 74}}), "R-STR-14");
   EXPECT_EQ(rule({.replica = {}, .limits = {.triangles = 95}}), "R-STR-14");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Curves, and the paths that a client eases into.
+/// Curves, and the paths on which a client smooths errors of updates.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -173,57 +173,57 @@ TEST(ClientCurve, AnOffsetLeadsFromOnePoseToTheOther) {
   EXPECT_EQ(displaced(from, offset_between(from, to), {}, {}), from);
 }
 
-// ==== easing ====
+// ==== smoothing ====
 
-SharedScene eased_scene(std::uint8_t span = 1) {
+SharedScene smoothed_scene(std::uint8_t span = 1) {
   SceneSpec spec = testing::spec_of(1);
-  spec.is_eased = true;
+  spec.is_smoothed = true;
   spec.baseline_span = span;
   return testing::shared(spec);
 }
 
-RigidState update_at(std::int64_t tick, std::int32_t x, std::uint8_t ease, std::uint8_t keep = 0) {
-  return {.tick = tick, .position = {x, 0, 0}, .ease = ease, .keep = keep};
+RigidState update_at(std::int64_t tick, std::int32_t x, std::uint8_t smoothing_exp, std::uint8_t retained = 0) {
+  return {.tick = tick, .position = {x, 0, 0}, .smoothing_exp = smoothing_exp, .retained = retained};
 }
 
-TEST(Easing, OffsetShrinksInAStraightLine) {
-  const SharedScene scene = eased_scene();
+TEST(Smoothing, OffsetShrinksInAStraightLine) {
+  const SharedScene scene = smoothed_scene();
   const RigidPredictor predictor(*scene);
-  EasedPath path;
+  SmoothedPath path;
   path.follow(predictor, update_at(10, 1600, 4));
   for (std::int64_t t = 0; t <= 40; ++t)
     EXPECT_EQ(path.pose(predictor, 10 + t).position[0], 1600 - 100 * std::max<std::int64_t>(16 - t, 0)) << t;
 }
 
-TEST(Easing, KeepsTheSixteenthsThatAreTold) {
-  const SharedScene scene = eased_scene();
+TEST(Smoothing, KeepsTheSixteenthsThatAreTold) {
+  const SharedScene scene = smoothed_scene();
   const RigidPredictor predictor(*scene);
-  for (const auto& [keep, left] : {std::pair{0, 1600}, {1, 1500}, {2, 1200}, {3, 800}}) {
-    EasedPath path;
-    path.follow(predictor, update_at(10, 1600, 4, static_cast<std::uint8_t>(keep)));
+  for (const auto& [retained, left] : {std::pair{0, 1600}, {1, 1500}, {2, 1200}, {3, 800}}) {
+    SmoothedPath path;
+    path.follow(predictor, update_at(10, 1600, 4, static_cast<std::uint8_t>(retained)));
     EXPECT_EQ(path.pose(predictor, 10).position[0], 1600 - left) << keep;
   }
 }
 
-TEST(Easing, WithoutEaseTheUpdateIsShownAtOnce) {
-  const SharedScene scene = eased_scene();
+TEST(Smoothing, WithoutSmoothingTheUpdateIsShownAtOnce) {
+  const SharedScene scene = smoothed_scene();
   const RigidPredictor predictor(*scene);
-  EasedPath path;
+  SmoothedPath path;
   path.follow(predictor, update_at(10, 1600, 4));
   path.follow(predictor, update_at(12, 500, 0));
   EXPECT_EQ(path.pose(predictor, 12).position[0], 500);
 }
 
 /// Rotations by every angle up to half a circle: half of the time leaves half of the angle.
-TEST(Easing, RotationsShrinkByTheirAngle) {
-  const SharedScene scene = eased_scene();
+TEST(Smoothing, RotationsShrinkByTheirAngle) {
+  const SharedScene scene = smoothed_scene();
   const RigidPredictor predictor(*scene);
   for (double angle = 0.01; angle < 3.1; angle += 0.1) {
     RigidState turned = update_at(5, 0, 6);
     const double s = std::sin(angle / 2);
     turned.rotation = {static_cast<std::int32_t>(std::lround(1073741823.0 * std::cos(angle / 2))), 0,
                        static_cast<std::int32_t>(std::lround(1073741823.0 * s)), 0};
-    EasedPath path;
+    SmoothedPath path;
     path.follow(predictor, turned);
     const auto angle_at = [&](std::int64_t tick) {
       return angle_between(to_pose(path.pose(predictor, tick), 22).rotation, to_pose({{}, turned.rotation}, 22).rotation);
@@ -234,12 +234,12 @@ TEST(Easing, RotationsShrinkByTheirAngle) {
   }
 }
 
-/// Eventful motion: what is shown keeps the bounds at every tick and does not jump where it would without easing.
-TEST(Easing, BoundsHoldOnTheWayAndStepsAreSmall) {
+/// Eventful motion: what is shown keeps the bounds at every tick and does not jump where it would without smoothing.
+TEST(Smoothing, BoundsHoldOnTheWayAndStepsAreSmall) {
   RigidTriggers triggers{.visual_position = 0.001, .visual_rotation = 0.02, .haptic = HapticRule::off};
-  const auto worst_step = [&](bool is_eased, int& packets, std::vector<double>& steps) {
+  const auto worst_step = [&](bool is_smoothed, int& packets, std::vector<double>& steps) {
     SceneSpec spec = testing::spec_of(1);
-    spec.is_eased = is_eased;
+    spec.is_smoothed = is_smoothed;
     const SharedScene scene = testing::shared(spec);
     auto sender = Sender::create(scene, {.triggers = triggers}).value();
     auto receiver = Receiver::create(scene).value();
@@ -260,12 +260,12 @@ TEST(Easing, BoundsHoldOnTheWayAndStepsAreSmall) {
       before = error;
     }
   };
-  int plain = 0, eased = 0;
+  int plain = 0, smoothed = 0;
   std::vector<double> jumps, steps;
   worst_step(false, plain, jumps);
-  worst_step(true, eased, steps);
+  worst_step(true, smoothed, steps);
   ASSERT_GT(plain, 200);
-  EXPECT_LT(eased, 1.1 * plain);
+  EXPECT_LT(smoothed, 1.1 * plain);
   const auto median = [](std::vector<double>& of) {
     std::nth_element(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2), of.end());
     return of[of.size() / 2];
@@ -273,8 +273,8 @@ TEST(Easing, BoundsHoldOnTheWayAndStepsAreSmall) {
   EXPECT_LT(median(steps), 0.25 * median(jumps));
 }
 
-/// The same updates, none of which eases: in an eased scene each of them says so.
-TEST(Easing, ASceneThatIsNotEasedHasNoBitOfIt) {
+/// The same updates, none of which is smoothed: in a smoothed scene each of them says so.
+TEST(Smoothing, ASceneThatIsNotSmoothedHasNoBitOfIt) {
   const auto bytes_of = [](const SharedScene& scene) {
     const RigidTriggers triggers{.reduction = Reduction::none, .visual_position = 0.001, .haptic = HapticRule::off};
     auto sender = Sender::create(scene, {.triggers = triggers}).value();
@@ -286,45 +286,45 @@ TEST(Easing, ASceneThatIsNotEasedHasNoBitOfIt) {
     }
     return bytes;
   };
-  EXPECT_LT(bytes_of(testing::scene_of(1)), bytes_of(eased_scene()));
+  EXPECT_LT(bytes_of(testing::scene_of(1)), bytes_of(smoothed_scene()));
 }
 
 /// Who begins at a key packet has shown nothing before it.
-TEST(Easing, KeyPacketsAreNotEased) {
+TEST(Smoothing, KeyPacketsAreNotSmoothed) {
   const RigidTriggers triggers{.visual_position = 0.001, .haptic = HapticRule::off};
   SenderOptions options{.triggers = triggers};
   options.policy.key_interval = 0.2;
-  auto sender = Sender::create(eased_scene(), options).value();
+  auto sender = Sender::create(smoothed_scene(), options).value();
   testing::Motion motion(6);
-  auto receiver = Receiver::create(eased_scene()).value();
-  std::size_t keys = 0, eased = 0;
+  auto receiver = Receiver::create(smoothed_scene()).value();
+  std::size_t keys = 0, smoothed = 0;
   for (std::int64_t tick = 0; tick < 9000; ++tick) {
     const RigidSample truth = motion.step(1e-3);
     const Packet packet = only(sender.encode(tick, {.objects = {&truth, 1}}));
     if (packet.bytes.empty()) continue;
     ASSERT_TRUE(receiver.push(packet.bytes));
-    eased += receiver.object(0).ease > 0;
+    smoothed += receiver.object(0).smoothing_exp > 0;
     if (!packet.key) continue;
     ++keys;
-    auto late = Receiver::create(eased_scene()).value();
+    auto late = Receiver::create(smoothed_scene()).value();
     ASSERT_TRUE(late.push(packet.bytes));
-    ASSERT_EQ(late.object(0).ease, 0);
+    ASSERT_EQ(late.object(0).smoothing_exp, 0);
     const RigidPose shown = late.replica().pose(0, tick);
     ASSERT_EQ(shown.position, late.object(0).position);
   }
   EXPECT_GT(keys, 20U);
-  EXPECT_GT(eased, 20U);
+  EXPECT_GT(smoothed, 20U);
 }
 
-TEST(Easing, ALinearClientIsRefused) {
-  const auto receiver = Receiver::create(eased_scene(), {.replica = {.interpolation = Interpolation::linear}, .limits = {}});
+TEST(Smoothing, ALinearClientIsRefused) {
+  const auto receiver = Receiver::create(smoothed_scene(), {.replica = {.interpolation = Interpolation::linear}, .limits = {}});
   ASSERT_FALSE(receiver);
   EXPECT_STREQ(receiver.error().rule, "R-API-4");
 }
 
 /// All packets build on the first one, so that they can be decoded in any order.
-TEST(Easing, PlayoutShowsThePathWhateverTheOrderOfArrival) {
-  const SharedScene scene = eased_scene(64);
+TEST(Smoothing, PlayoutShowsThePathWhateverTheOrderOfArrival) {
+  const SharedScene scene = smoothed_scene(64);
   const RigidTriggers triggers{.visual_position = 0.0005, .haptic = HapticRule::off};
   auto sender =
       Sender::create(scene, {.triggers = triggers, .policy = {.key_interval = 0, .baseline = Baseline::acknowledged}}).value();

@@ -114,7 +114,7 @@ TEST(ForceTrend, TheLeastOfTheForcesCounts) {
   EXPECT_NEAR(trend.sinking(0), 0.04 / 0.26 / 0.002, 1e-6);
 }
 
-// ==== leaning ====
+// ==== look-ahead velocity ====
 
 constexpr double kTick = 1e-3;
 
@@ -137,13 +137,13 @@ Acceleration after_three_ticks(const Scene& scene, double acceleration) {
 /// What is told of the only object more than its velocities.
 Acceleration::Motion lead_of(const Acceleration& acceleration, const RigidSample& now, std::span<const Contact> contacts,
                              const RigidTriggers& triggers) {
-  return leaning(acceleration.of(0), ErrorShare(0, now.pose, contacts, triggers));
+  return look_ahead_velocity(acceleration.of(0), ErrorRatio(0, now.pose, contacts, triggers));
 }
 
-/// Its senders lean.
-SharedScene eased_scene() {
+/// Its senders look ahead.
+SharedScene smoothed_scene() {
   SceneSpec spec = testing::spec_of(1);
-  spec.is_eased = true;
+  spec.is_smoothed = true;
   return testing::shared(spec);
 }
 
@@ -166,7 +166,7 @@ int packets(const SharedScene& scene, std::int64_t ticks, const Samples& sample_
 }
 
 /// The velocity that is told leads to an error of 0.6 of the bound on the one side, if the acceleration fades as is taken.
-TEST(Leaning, LeadsToTheShareOfTheBoundThatIsTaken) {
+TEST(LookAheadVelocity, LeadsToTheFractionOfTheBoundThatIsTaken) {
   constexpr double kTau = 0.03, kMargin = 0.6;
   const RigidTriggers triggers{.visual_position = 6e-3, .haptic = HapticRule::off};
   for (const double acceleration : {0.3, 1.0, 3.0, 10.0, 40.0}) {
@@ -185,15 +185,15 @@ TEST(Leaning, LeadsToTheShareOfTheBoundThatIsTaken) {
   }
 }
 
-TEST(Leaning, AnUpdateUnderAnAccelerationLastsLonger) {
+TEST(LookAheadVelocity, AnUpdateUnderAnAccelerationLastsLonger) {
   for (const double acceleration : {5.0, 20.0}) {
     const auto at = [&](std::int64_t tick) { return falling(acceleration, tick); };
-    EXPECT_GT(packets(scene_of(1), 400, at), 1.7 * packets(eased_scene(), 400, at)) << acceleration;
+    EXPECT_GT(packets(scene_of(1), 400, at), 1.7 * packets(smoothed_scene(), 400, at)) << acceleration;
   }
 }
 
-/// What is touched leans as the force permits, along the normal.
-TEST(Leaning, TheForceBoundCountsWhereItIsTheNarrowest) {
+/// What is touched looks ahead as the force permits, along the normal.
+TEST(LookAheadVelocity, TheForceBoundCountsWhereItIsTheNarrowest) {
   const SharedScene scene = scene_of(1);
   const Acceleration fall = after_three_ticks(*scene, 2);
   const RigidSample now = falling(2, 2);
@@ -209,7 +209,7 @@ TEST(Leaning, TheForceBoundCountsWhereItIsTheNarrowest) {
 }
 
 /// About z, from rest; the contact is 20 mm away from the axis.
-TEST(Leaning, WhatTurnsLeansAsRotationAndForcePermit) {
+TEST(LookAheadVelocity, WhatTurnsLooksAheadAsRotationAndForcePermit) {
   const SharedScene scene = scene_of(1);
   Acceleration fall(*scene);
   RigidSample now;
@@ -229,7 +229,7 @@ TEST(Leaning, WhatTurnsLeansAsRotationAndForcePermit) {
   EXPECT_EQ(lead({.haptic = HapticRule::off, .weber_fraction = 0.01}, true), free);
 }
 
-TEST(Leaning, FixedThresholdsOfWhatIsTouchedCount) {
+TEST(LookAheadVelocity, FixedThresholdsOfWhatIsTouchedCount) {
   const SharedScene scene = scene_of(1);
   const Acceleration fall = after_three_ticks(*scene, 2);
   const RigidSample now = falling(2, 2);
@@ -241,7 +241,7 @@ TEST(Leaning, FixedThresholdsOfWhatIsTouchedCount) {
   EXPECT_LT(lead(1e-4), 0.7 * lead(5e-3));
 }
 
-TEST(Leaning, MotionWithoutAccelerationIsToldAsWithoutIt) {
+TEST(LookAheadVelocity, MotionWithoutAccelerationIsToldAsWithoutIt) {
   const auto steady = [](std::int64_t tick) {
     RigidSample out = falling(0, tick);
     out.velocity = {0.3, 0, 0};
@@ -263,13 +263,13 @@ TEST(Leaning, MotionWithoutAccelerationIsToldAsWithoutIt) {
   };
   const auto plain = told(scene_of(1));
   ASSERT_FALSE(plain.empty());
-  EXPECT_EQ(told(eased_scene()), plain);
+  EXPECT_EQ(told(smoothed_scene()), plain);
 }
 
 /// A call that is refused leaves no acceleration behind.
-TEST(Leaning, RefusedTruthIsForgotten) {
-  auto undisturbed = Sender::create(eased_scene(), without_heartbeat()).value();
-  auto disturbed = Sender::create(eased_scene(), without_heartbeat()).value();
+TEST(LookAheadVelocity, RefusedTruthIsForgotten) {
+  auto undisturbed = Sender::create(smoothed_scene(), without_heartbeat()).value();
+  auto disturbed = Sender::create(smoothed_scene(), without_heartbeat()).value();
   for (std::int64_t tick = 0; tick < 600; tick += 2) {
     const RigidSample sample = falling(8, tick);
     const RigidSample wrong[2]{{}, sample};
@@ -280,68 +280,68 @@ TEST(Leaning, RefusedTruthIsForgotten) {
   }
 }
 
-// ==== ease choice ====
+// ==== smoothing choice ====
 
 const RigidTriggers kTriggers{.visual_position = 0.001, .visual_rotation = 0.05};
-const ErrorShare kShare(0, {}, {}, kTriggers);
+const ErrorRatio kRatio(0, {}, {}, kTriggers);
 
 UpdateCourse course(double offset, double drift, double acceleration) {
   return {{{offset, 0, 0}, {}}, {}, {{drift, 0, 0}, {}}, {{acceleration, 0, 0}, {}}};
 }
 
-TEST(EaseChoice, TakesSixteenMillisecondsWhereTheNewPathIsRight) {
-  EXPECT_EQ(longest_ease(course(-0.001, 0, 0), kShare, 1000), 4);
-  EXPECT_EQ(longest_ease(course(-0.001, 0, 0), kShare, 8000), 7) << "the longest there is";
-  EXPECT_EQ(longest_ease(course(-0.001, 0, 0), kShare, 148), 1);
-  EXPECT_EQ(longest_ease(course(-0.001, 0, 0), kShare, 60), 0) << "two ticks are longer than that";
-  EXPECT_EQ(longest_ease(course(-0.001, 0, 0), kShare, 1), 0);
+TEST(SmoothingChoice, TakesSixteenMillisecondsWhereTheNewPathIsRight) {
+  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, 0), kRatio, 1000), 4);
+  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, 0), kRatio, 8000), 7) << "the longest there is";
+  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, 0), kRatio, 148), 1);
+  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, 0), kRatio, 60), 0) << "two ticks are longer than that";
+  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, 0), kRatio, 1), 0);
 }
 
 /// The error that grows and the offset that shrinks are on the same side, or on different ones.
-TEST(EaseChoice, IsShorterWhereTheErrorGrowsOnTheSideOfTheOffset) {
-  const auto ease = [](double drift) { return longest_ease(course(-0.001, drift, 0), kShare, 1000); };
-  EXPECT_EQ(ease(0.03), 4);
+TEST(SmoothingChoice, IsShorterWhereTheErrorGrowsOnTheSideOfTheOffset) {
+  const auto smoothing_exp = [](double drift) { return longest_smoothing_exp(course(-0.001, drift, 0), kRatio, 1000); };
+  EXPECT_EQ(smoothing_exp(0.03), 4);
   int before = 4;
   for (const double drift : {-0.02, -0.05, -0.1, -0.2, -0.5}) {
-    EXPECT_LE(ease(drift), before) << drift;
-    before = ease(drift);
+    EXPECT_LE(smoothing_exp(drift), before) << drift;
+    before = smoothing_exp(drift);
   }
   EXPECT_EQ(before, 0);
-  EXPECT_LT(longest_ease(course(-0.001, 0, 10), kShare, 1000), 4) << "the truth runs away from where it is shown";
-  EXPECT_EQ(longest_ease(course(-0.001, 0, -5), kShare, 1000), 4);
+  EXPECT_LT(longest_smoothing_exp(course(-0.001, 0, 10), kRatio, 1000), 4) << "the truth runs away from where it is shown";
+  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, -5), kRatio, 1000), 4);
 }
 
 /// An offset that the force permits now is gone before the force is.
-TEST(EaseChoice, IsShorterWhereTheForceSinks) {
+TEST(SmoothingChoice, IsShorterWhereTheForceSinks) {
   const Contact contact{ContactKind::surface, 0, {}, {1, 0, 0}, {-0.001, 0, 0}, 1000};
-  const auto ease = [&](double sinking) {
-    const ErrorShare share(0, {}, {&contact, 1}, {.weber_fraction = 0.04}, sinking);
-    return longest_ease(course(-0.000036, 0, 0), share, 1000);
+  const auto smoothing_exp = [&](double sinking) {
+    const ErrorRatio ratio(0, {}, {&contact, 1}, {.weber_fraction = 0.04}, sinking);
+    return longest_smoothing_exp(course(-0.000036, 0, 0), ratio, 1000);
   };
-  EXPECT_EQ(ease(0), 4);
-  EXPECT_EQ(ease(20), 4) << "a third in 16 ms";
-  EXPECT_LT(ease(60), 4);
-  EXPECT_GT(ease(60), 0);
-  EXPECT_LT(ease(200), ease(60));
+  EXPECT_EQ(smoothing_exp(0), 4);
+  EXPECT_EQ(smoothing_exp(20), 4) << "a third in 16 ms";
+  EXPECT_LT(smoothing_exp(60), 4);
+  EXPECT_GT(smoothing_exp(60), 0);
+  EXPECT_LT(smoothing_exp(200), smoothing_exp(60));
 }
 
-TEST(EaseChoice, RotationCountsAsWell) {
+TEST(SmoothingChoice, RotationCountsAsWell) {
   const UpdateCourse turned{{{}, {0, 0.05, 0}}, {}, {{}, {0, 40, 0}}, {}};
-  EXPECT_LT(longest_ease(turned, kShare, 1000), 2);
-  const auto ease = [](double acceleration) {
-    return longest_ease({{{}, {0, -0.02, 0}}, {{}, {0, -0.02, 0}}, {}, {{}, {0, acceleration, 0}}}, kShare, 1000);
+  EXPECT_LT(longest_smoothing_exp(turned, kRatio, 1000), 2);
+  const auto smoothing_exp = [](double acceleration) {
+    return longest_smoothing_exp({{{}, {0, -0.02, 0}}, {{}, {0, -0.02, 0}}, {}, {{}, {0, acceleration, 0}}}, kRatio, 1000);
   };
-  EXPECT_LT(ease(250), 4) << "the truth turns away from where it is shown";
-  EXPECT_EQ(ease(-250), 4);
+  EXPECT_LT(smoothing_exp(250), 4) << "the truth turns away from where it is shown";
+  EXPECT_EQ(smoothing_exp(-250), 4);
 }
 
 /// The error leaves its bounds in the first quarter of 16 ms and is back before the half.
-TEST(EaseChoice, LooksAtTheFirstQuarter) {
-  EXPECT_LT(longest_ease(course(0.001, 0.08, 16), kShare, 1000), 4);
-  EXPECT_EQ(longest_ease(course(0.001, 0.07, 16), kShare, 1000), 4);
+TEST(SmoothingChoice, LooksAtTheFirstQuarter) {
+  EXPECT_LT(longest_smoothing_exp(course(0.001, 0.08, 16), kRatio, 1000), 4);
+  EXPECT_EQ(longest_smoothing_exp(course(0.001, 0.07, 16), kRatio, 1000), 4);
 }
 
-// ==== error share ====
+// ==== error ratio ====
 
 Pose moved(const Pose& pose, const Vec3& by, const Vec3& turn) {
   const double angle = norm(turn), half = angle / 2;
@@ -350,7 +350,7 @@ Pose moved(const Pose& pose, const Vec3& by, const Vec3& turn) {
 }
 
 /// Held against the rule itself, for errors so small that the first order is all there is.
-TEST(ErrorShare, IsTheRatioOfTheRuleForSmallErrors) {
+TEST(ErrorRatio, IsTheRatioOfTheRuleForSmallErrors) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   const auto vector = [&](double size) { return Vec3{size * normal(random), size * normal(random), size * normal(random)}; };
@@ -365,50 +365,50 @@ TEST(ErrorShare, IsTheRatioOfTheRuleForSmallErrors) {
     const RigidTriggers triggers{.visual_position = 1, .visual_rotation = 3, .weber_fraction = 0.04};
     const Vec3 by = vector(1e-7), turned = vector(1e-6);
     const double ratio = haptic_ratio(triggers, contact_force(contact, truth), contact_force(contact, moved(truth, by, turned)));
-    EXPECT_NEAR(ErrorShare(0, truth, {&contact, 1}, triggers)(by, turned), ratio, 0.02 * ratio + 1e-6) << round;
+    EXPECT_NEAR(ErrorRatio(0, truth, {&contact, 1}, triggers)(by, turned), ratio, 0.02 * ratio + 1e-6) << round;
   }
 }
 
-TEST(ErrorShare, TheNarrowestBoundCounts) {
+TEST(ErrorRatio, TheNarrowestBoundCounts) {
   const RigidTriggers seen{.visual_position = 0.002, .visual_rotation = 0.05};
-  const ErrorShare free(0, {}, {}, seen);
+  const ErrorRatio free(0, {}, {}, seen);
   EXPECT_NEAR(free({0, 0.001, 0}, {}), 0.5, 1e-12);
   EXPECT_NEAR(free({0, 0.001, 0}, {0.04, 0, 0}), 0.8, 1e-12);
   std::vector<Contact> contacts{{ContactKind::surface, 1, {}, {0, 0, 1}, {0, 0, -0.001}, 1000},
                                 {ContactKind::none, 0, {}, {0, 0, 1}, {0, 0, -0.001}, 1000}};
-  EXPECT_EQ(ErrorShare(0, {}, contacts, seen)({0, 0, 0.001}, {}), free({0, 0, 0.001}, {})) << "of another object, and of none";
+  EXPECT_EQ(ErrorRatio(0, {}, contacts, seen)({0, 0, 0.001}, {}), free({0, 0, 0.001}, {})) << "of another object, and of none";
   contacts[0].object = 0;
-  EXPECT_NEAR(ErrorShare(0, {}, contacts, {.weber_fraction = 0.1})({0, 0, 0.0005}, {}), 5, 1e-9) << "0.5 N off at 1 N";
-  EXPECT_NEAR(ErrorShare(0, {}, contacts, {.visual_position = 6e-3, .haptic = HapticRule::fixed, .fixed_position = 0.001})(
+  EXPECT_NEAR(ErrorRatio(0, {}, contacts, {.weber_fraction = 0.1})({0, 0, 0.0005}, {}), 5, 1e-9) << "0.5 N off at 1 N";
+  EXPECT_NEAR(ErrorRatio(0, {}, contacts, {.visual_position = 6e-3, .haptic = HapticRule::fixed, .fixed_position = 0.001})(
                   {0.0005, 0, 0}, {}),
               0.5, 1e-9);
-  EXPECT_NEAR(ErrorShare(0, {}, contacts, {.haptic = HapticRule::cone, .cone_angle = 0.01})({}, {0.005, 0, 0}), 0.5, 1e-9);
-  EXPECT_LT(ErrorShare(0, {}, contacts, {.visual_position = 6e-3, .haptic = HapticRule::off})({0, 0, 0.0005}, {}), 0.1);
+  EXPECT_NEAR(ErrorRatio(0, {}, contacts, {.haptic = HapticRule::cone, .cone_angle = 0.01})({}, {0.005, 0, 0}), 0.5, 1e-9);
+  EXPECT_LT(ErrorRatio(0, {}, contacts, {.visual_position = 6e-3, .haptic = HapticRule::off})({0, 0, 0.0005}, {}), 0.1);
 }
 
 /// What is permitted at a force that sinks by a tenth per 10 ms, down to what is permitted at the floor; what is seen stays.
-TEST(ErrorShare, AForceThatSinksLeavesLessLater) {
+TEST(ErrorRatio, AForceThatSinksLeavesLessLater) {
   const Contact contact{ContactKind::surface, 0, {}, {0, 0, 1}, {0, 0, -0.001}, 1000};
   const RigidTriggers triggers{.visual_position = 0.01, .weber_fraction = 0.1, .force_floor = 0.2};
-  const ErrorShare share(0, {}, {&contact, 1}, triggers, 10);
+  const ErrorRatio ratio(0, {}, {&contact, 1}, triggers, 10);
   const Vec3 wrong{0, 0, 0.00005};
-  EXPECT_NEAR(share(wrong, {}), 0.5, 1e-9);
-  EXPECT_NEAR(share(wrong, {}, 0.01), 0.5 / 0.9, 1e-9);
-  EXPECT_NEAR(share(wrong, {}, 0.05), 1, 1e-9);
-  EXPECT_NEAR(share(wrong, {}, 0.2), 0.5 / 0.2, 1e-9);
-  EXPECT_EQ(share({0.001, 0, 0}, {}, 0.2), share({0.001, 0, 0}, {}));
-  EXPECT_EQ(ErrorShare(0, {}, {&contact, 1}, triggers)(wrong, {}, 0.2), share(wrong, {}));
+  EXPECT_NEAR(ratio(wrong, {}), 0.5, 1e-9);
+  EXPECT_NEAR(ratio(wrong, {}, 0.01), 0.5 / 0.9, 1e-9);
+  EXPECT_NEAR(ratio(wrong, {}, 0.05), 1, 1e-9);
+  EXPECT_NEAR(ratio(wrong, {}, 0.2), 0.5 / 0.2, 1e-9);
+  EXPECT_EQ(ratio({0.001, 0, 0}, {}, 0.2), ratio({0.001, 0, 0}, {}));
+  EXPECT_EQ(ErrorRatio(0, {}, {&contact, 1}, triggers)(wrong, {}, 0.2), ratio(wrong, {}));
 }
 
-TEST(ErrorShare, LooksAtEightContacts) {
+TEST(ErrorRatio, LooksAtEightContacts) {
   std::vector<Contact> contacts(9, {ContactKind::surface, 0, {}, {0, 0, 1}, {0, 0, -0.01}, 100});
-  const auto share = [&] { return ErrorShare(0, {}, contacts, {.weber_fraction = 0.04})({0, 0, 0.0001}, {}); };
-  const double before = share();
+  const auto ratio = [&] { return ErrorRatio(0, {}, contacts, {.weber_fraction = 0.04})({0, 0, 0.0001}, {}); };
+  const double before = ratio();
   contacts[8].stiffness = contacts[8].stiffness * 1000;
   contacts[8].device.z = -1e-6;
-  EXPECT_EQ(share(), before);
+  EXPECT_EQ(ratio(), before);
   contacts[7] = contacts[8];
-  EXPECT_GT(share(), before);
+  EXPECT_GT(ratio(), before);
 }
 
 }  // namespace

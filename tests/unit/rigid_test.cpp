@@ -131,9 +131,9 @@ Outcome run(const SharedScene& scene, const RigidTriggers& triggers, std::uint64
 }
 
 TEST(Rigid, BoundsHoldOnWhatIsShownForEveryRule) {
-  for (const bool is_eased : {false, true}) {
+  for (const bool is_smoothed : {false, true}) {
     SceneSpec spec = testing::spec_of(3);
-    spec.is_eased = is_eased;
+    spec.is_smoothed = is_smoothed;
     for (const HapticRule rule : {HapticRule::off, HapticRule::isotropic, HapticRule::cone}) {
       for (const double p : {0.01, 0.04, 0.3}) {
         RigidTriggers triggers{.haptic = rule, .weber_fraction = p};
@@ -324,7 +324,7 @@ TEST(Rigid, OptionsOutsideTheirRangeAreRefused) {
   EXPECT_EQ(rule([](auto& o) { o.triggers.visual_rotation = 4; }), "R-API-4");
   EXPECT_EQ(rule([](auto& o) { o.triggers.weber_fraction = 0; }), "R-API-4");
   EXPECT_EQ(rule([](auto& o) { o.triggers.weber_fraction = 4; }), "R-API-4") << "400 %";
-  EXPECT_EQ(rule([](auto& o) { o.triggers.perceptual_share = 4; }), "R-API-4") << "of what people notice";
+  EXPECT_EQ(rule([](auto& o) { o.triggers.perceptual_fraction = 4; }), "R-API-4") << "of what people notice";
   EXPECT_EQ(rule([&](auto& o) { o.triggers.weber_fraction = nan; }), "R-API-4");
   EXPECT_EQ(rule([&](auto& o) { o.triggers.visual_position = nan; }), "R-API-4");
   EXPECT_EQ(rule([](auto& o) { o.triggers.heartbeat = -1; }), "R-API-4");

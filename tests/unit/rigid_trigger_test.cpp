@@ -40,12 +40,12 @@ TEST(RigidTrigger, OtherRulesDoNotLookAtForces) {
   EXPECT_EQ(haptic_ratio(t, {0, 0, 1}, {9, 9, 9}), 0);
 }
 
-TEST(RigidTrigger, PerceptualFollowsTheCurveTimesItsShare) {
+TEST(RigidTrigger, PerceptualFollowsTheCurveTimesItsFraction) {
   RigidTriggers t{.haptic = HapticRule::perceptual, .weber_fraction = 1e-6};
   EXPECT_NEAR(haptic_ratio(t, {0, 0, 2.5}, {0, 0.25, 2.5}), 1, 1e-12);
   EXPECT_NEAR(haptic_ratio(t, {0, 0, 0.3}, {0, 0, 0.3 * 1.22}), 1, 1e-12);
   EXPECT_NEAR(haptic_ratio(t, {}, {0.05 * 0.22, 0, 0}), 1, 1e-12) << "at the floor of 0.05 N";
-  t.perceptual_share = 0.5;
+  t.perceptual_fraction = 0.5;
   EXPECT_NEAR(haptic_ratio(t, {0, 0, 1}, {0, 0, 1.07}), 1, 1e-12);
   t.force_floor = 1;
   EXPECT_NEAR(haptic_ratio(t, {0, 0, 0.2}, {0, 0, 0.27}), 1, 1e-12) << "a force below the floor is judged as one at it";
@@ -71,13 +71,13 @@ TEST(RigidTrigger, NoForceInsideAnIsotropicDeadzoneLeavesItsAngle) {
 }
 
 TEST(RigidTrigger, PerceptualCurveFollowsItsPoints) {
-  EXPECT_DOUBLE_EQ(perceptual_fraction(0), 0.22);
-  EXPECT_DOUBLE_EQ(perceptual_fraction(0.3), 0.22);
-  EXPECT_DOUBLE_EQ(perceptual_fraction(0.5), 0.17);
-  EXPECT_DOUBLE_EQ(perceptual_fraction(0.75), 0.155);
-  EXPECT_DOUBLE_EQ(perceptual_fraction(1.0), 0.14);
-  EXPECT_DOUBLE_EQ(perceptual_fraction(2.5), 0.10);
-  EXPECT_DOUBLE_EQ(perceptual_fraction(100), 0.10);
+  EXPECT_DOUBLE_EQ(weber_fraction_at(0), 0.22);
+  EXPECT_DOUBLE_EQ(weber_fraction_at(0.3), 0.22);
+  EXPECT_DOUBLE_EQ(weber_fraction_at(0.5), 0.17);
+  EXPECT_DOUBLE_EQ(weber_fraction_at(0.75), 0.155);
+  EXPECT_DOUBLE_EQ(weber_fraction_at(1.0), 0.14);
+  EXPECT_DOUBLE_EQ(weber_fraction_at(2.5), 0.10);
+  EXPECT_DOUBLE_EQ(weber_fraction_at(100), 0.10);
 }
 
 TEST(RigidTrigger, SurfaceForceIsNormalAndOnlyPushes) {

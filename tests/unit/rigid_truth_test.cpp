@@ -24,11 +24,11 @@ namespace {
 
 constexpr std::size_t kObjects = 12;
 
-SharedScene many(bool is_eased, bool has_interest = false) {
+SharedScene many(bool is_smoothed, bool has_interest = false) {
   SceneBuilder builder(1000);
   if (has_interest) builder.interest(0.05, 0.3);
   for (std::size_t i = 0; i < kObjects; ++i) builder.rigid("body " + std::to_string(i), {}, i == 3 ? Dof::none : Dof::all);
-  builder.rigid_profile(is_eased ? RigidProfile::main : RigidProfile::thesis);
+  builder.rigid_profile(is_smoothed ? RigidProfile::main : RigidProfile::thesis);
   return builder.motion({{0, 0, -9.81}, 2}).baselines(64).build().value();
 }
 
@@ -99,8 +99,8 @@ bool are_equal(const Result<std::span<const Packet>>& a, const Result<std::span<
 }
 
 /// in  names  the truth says what has moved;  looks  clients have interest, and look from places of their own
-void compare(bool is_eased, bool names, bool looks = false) {
-  const SharedScene scene = many(is_eased, looks);
+void compare(bool is_smoothed, bool names, bool looks = false) {
+  const SharedScene scene = many(is_smoothed, looks);
   const SenderOptions chain = options_of(Baseline::previous, 0.3);
   const auto shared = SharedTruth::create(scene, chain).value();
   std::vector<Pair> pairs;

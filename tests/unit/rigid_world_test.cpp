@@ -124,15 +124,15 @@ TEST(RigidWorld, TipsOverItsEdgeOnlyAboveTheLever) {
   // Pushed at height h a cube tips when F h > m g a / 2. F stays below the friction that would let it slide.
   const double height = 0.036, needed = kMass * kGravity * 0.02 / height;
   ASSERT_LT(1.05 * needed, kFriction);
-  for (const double share : {0.95, 1.05}) {
+  for (const double fraction : {0.95, 1.05}) {
     RigidWorld world(cube_scene());
     for (int i = 0; i < 150; ++i) {
       const RigidSample s = world.sample(0);
-      world.push(0, {share * needed, 0, 0}, to_world(s.pose, {-0.02, 0, height - 0.02}));
+      world.push(0, {fraction * needed, 0, 0}, to_world(s.pose, {-0.02, 0, height - 0.02}));
       ASSERT_TRUE(world.step());
     }
     const double tilt = angle_between(world.sample(0).pose.rotation, Quat{});
-    if (share < 1) EXPECT_LT(tilt, 1e-6);
+    if (fraction < 1) EXPECT_LT(tilt, 1e-6);
     else EXPECT_GT(tilt, 0.05);
   }
 }

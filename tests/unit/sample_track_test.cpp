@@ -138,8 +138,8 @@ TEST(SampleTrack, AReachThatIsSampledSeldomIsFollowed) {
     const Recorded all([&reach](double t) { return along_x(reach(t)); }, every(period, static_cast<int>(1400 / period)));
     double line = 0, curve = 0;
     for (int ms = 0; ms <= 1200; ++ms) {
-      const double from = std::floor(ms / period) * period, share = (ms - from) / period;
-      const double on_line = (1 - share) * reach(0.001 * from) + share * reach(0.001 * (from + period));
+      const double from = std::floor(ms / period) * period, fraction = (ms - from) / period;
+      const double on_line = (1 - fraction) * reach(0.001 * from) + fraction * reach(0.001 * (from + period));
       line = std::max(line, std::abs(on_line - reach(0.001 * ms)));
       curve = std::max(curve, std::abs(all.at(ms).pose.position.x - reach(0.001 * ms)));
     }

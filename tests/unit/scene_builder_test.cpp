@@ -53,16 +53,16 @@ TEST(SceneBuilder, WhatIsSaidOfTheStreamIsInTheScene) {
 }
 
 TEST(SceneBuilder, RigidObjectsAreOfProfileMainUnlessItIsSaid) {
-  EXPECT_TRUE(SceneBuilder().rigid("cube").build().value()->is_eased);
-  EXPECT_FALSE(SceneBuilder().rigid("cube").rigid_profile(RigidProfile::thesis).build().value()->is_eased);
-  EXPECT_FALSE(SceneBuilder().rigid("wall", {}, Dof::none).build().value()->is_eased) << "nothing moves";
+  EXPECT_TRUE(SceneBuilder().rigid("cube").build().value()->is_smoothed);
+  EXPECT_FALSE(SceneBuilder().rigid("cube").rigid_profile(RigidProfile::thesis).build().value()->is_smoothed);
+  EXPECT_FALSE(SceneBuilder().rigid("wall", {}, Dof::none).build().value()->is_smoothed) << "nothing moves";
 }
 
 /// What fades per frame, and the sets of weights, where they are left open.
-TEST(SceneBuilder, WhatIsLeftOpenSuitsTheBasisAndTheBoundThatIsPromised) {
+TEST(SceneBuilder, WhatIsLeftOpenSuitsTheBasisAndTheBoundThatIsDeclared) {
   const TriMesh mesh = testing::sheet(3, 2);
   const auto coded = [&](DeformableCoding coding, double visual) {
-    const auto built = SceneBuilder().deformable("a", mesh, std::move(coding)).promise({}, {.visual = visual}).build();
+    const auto built = SceneBuilder().deformable("a", mesh, std::move(coding)).declare_bounds({}, {.visual = visual}).build();
     return std::pair((*built)->deformables[0].fade, (*built)->deformables[0].weight_sets);
   };
   const DeformableCoding with_basis{.frame_period = 1000, .basis = testing::wave_basis(mesh, 3, 4)};
@@ -73,8 +73,8 @@ TEST(SceneBuilder, WhatIsLeftOpenSuitsTheBasisAndTheBoundThatIsPromised) {
   asked.fade = 0.5;
   asked.weight_sets = 4;
   EXPECT_EQ(coded(asked, 1e-5), std::pair(std::uint16_t{32768}, std::uint8_t{4}));
-  const auto unpromised = SceneBuilder().deformable("a", mesh, with_basis).build();
-  EXPECT_EQ((*unpromised)->deformables[0].fade, 64225);
+  const auto without_bounds = SceneBuilder().deformable("a", mesh, with_basis).build();
+  EXPECT_EQ((*without_bounds)->deformables[0].fade, 64225);
   asked.fade = 1.01;
   EXPECT_STREQ(SceneBuilder().deformable("a", mesh, asked).build().error().error.rule, "R-API-4");
 }
@@ -144,11 +144,11 @@ TEST(StiffnessLevels, AreNearAndInOrder) {
     EXPECT_EQ(stiffness_level(stiffness_of_level(static_cast<std::uint8_t>(level))).value(), level);
 }
 
-TEST(SceneBuilder, PromisesAreBoundsOfItsObjects) {
+TEST(SceneBuilder, DeclaredBoundsAreThoseOfItsObjects) {
   const TriMesh mesh = testing::sheet(1, 1);
   const RigidTriggers rigid{.visual_position = 0.011};
   const DeformableThresholds deformable{.visual = 3e-4};
-  const auto with = [&](SceneBuilder builder) { return builder.promise(rigid, deformable).build().value()->bounds.value(); };
+  const auto with = [&](SceneBuilder builder) { return builder.declare_bounds(rigid, deformable).build().value()->bounds.value(); };
   const StreamBounds both =
       with(SceneBuilder().rigid("cube").deformable("m", mesh).deformable("t", mesh, {.profile = DeformableProfile::thesis}));
   EXPECT_EQ(both.rigid, rigid);
@@ -216,9 +216,9 @@ TEST(SceneBuilder, WhatIsWrongWithNoObjectNamesNone) {
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").extrapolate(kNan)), "R-API-4 of ''");
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").baselines(0)), "R-STR-9 of ''");
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").baselines(65)), "R-STR-9 of ''");
-  EXPECT_EQ(refusal(SceneBuilder().rigid("a").promise({.visual_position = -1}, {})), "R-STR-17 of ''");
-  EXPECT_EQ(refusal(SceneBuilder().rigid("a").promise({.weber_fraction = 4}, {})), "R-API-4 of ''");
-  EXPECT_EQ(refusal(SceneBuilder().rigid("a").promise({.perceptual_share = 4}, {})), "R-API-4 of ''");
+  EXPECT_EQ(refusal(SceneBuilder().rigid("a").declare_bounds({.visual_position = -1}, {})), "R-STR-17 of ''");
+  EXPECT_EQ(refusal(SceneBuilder().rigid("a").declare_bounds({.weber_fraction = 4}, {})), "R-API-4 of ''");
+  EXPECT_EQ(refusal(SceneBuilder().rigid("a").declare_bounds({.perceptual_fraction = 4}, {})), "R-API-4 of ''");
 }
 
 /// The grid follows from the size of the world; where that and the bounds do not go together, both figures are told.
@@ -236,13 +236,13 @@ TEST(SceneBuilder, AWorldHasASize) {
   for (const double metres : {0.0, -1.0, kNan, 1e7})
     EXPECT_EQ(refusal(SceneBuilder().rigid("a").world_size(metres)), "R-API-4 of ''");
   const RigidTriggers fine{.visual_position = 1e-4};
-  EXPECT_TRUE(SceneBuilder().rigid("a").promise(fine, {}).world_size(16'000).build());
-  const auto refused = SceneBuilder().rigid("a").promise(fine, {}).world_size(1e5).build();
+  EXPECT_TRUE(SceneBuilder().rigid("a").declare_bounds(fine, {}).world_size(16'000).build());
+  const auto refused = SceneBuilder().rigid("a").declare_bounds(fine, {}).world_size(1e5).build();
   ASSERT_FALSE(refused);
   EXPECT_STREQ(refused.error().error.rule, "R-API-4");
   for (const char* part : {"1e+05 m", "0.1 mm", "1.638e+04 m"})
     EXPECT_NE(refused.error().detail.find(part), std::string::npos) << refused.error().detail;
-  EXPECT_TRUE(SceneBuilder().rigid("a", {}, Dof::none).promise(fine, {}).world_size(1e5).build()) << "nothing moves";
+  EXPECT_TRUE(SceneBuilder().rigid("a", {}, Dof::none).declare_bounds(fine, {}).world_size(1e5).build()) << "nothing moves";
   const auto away = SceneBuilder().rigid("a", {{600, 0, 0}, {}}).build();
   EXPECT_NE(away.error().detail.find("512 m"), std::string::npos) << away.error().detail;
 }
@@ -296,7 +296,7 @@ TEST(SceneBuilder, ABuiltSceneIsWrittenAndRead) {
                                 .rigid("cube", {{0.1, 0.2, 0.3}, {}})
                                 .deformable("sheet", testing::sheet(2, 2), {.frame_period = 1.5})
                                 .baselines(4)
-                                .promise({}, {})
+                                .declare_bounds({}, {})
                                 .build()
                                 .value();
   const auto parsed = parse_scene(write_scene(*scene).value());

@@ -239,12 +239,12 @@ RigidTriggers with_rule(HapticRule rule) {
   out.visual_position = 0.1;
   if (rule == HapticRule::isotropic || rule == HapticRule::cone) out.weber_fraction = 1.0 / 3;
   if (rule == HapticRule::cone) out.cone_angle = 0.7;
-  if (rule == HapticRule::perceptual) out.perceptual_share = 0.3;
+  if (rule == HapticRule::perceptual) out.perceptual_fraction = 0.3;
   if (rule == HapticRule::fixed) out.fixed_rotation = 0.123;
   return out;
 }
 
-TEST(StreamBounds, WhatTheSenderPromisesArrivesToTheBit) {
+TEST(StreamBounds, WhatTheSenderDeclaresArrivesToTheBit) {
   for (const HapticRule rule :
        {HapticRule::off, HapticRule::isotropic, HapticRule::cone, HapticRule::fixed, HapticRule::perceptual}) {
     for (const std::optional<double> weber : {std::optional<double>(), std::optional(0.1)}) {

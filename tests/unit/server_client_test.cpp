@@ -103,7 +103,7 @@ TEST(RemoteClient, ReadsNoReceiverThatIsGone) {
     auto receiver = std::make_unique<Receiver>(
         Receiver::create(server->stream_scene(), {.replica = {.interpolation = Interpolation::playout}, .limits = {}}).value());
     const DeviceSample device{.position = {-0.018, 0, 0.02}};
-    const auto touch = [&] { client->touch(0, device, {.share = 1, .delay = 50}); };
+    const auto touch = [&] { client->touch(0, device, {.fraction = 1, .delay = 50}); };
     for (std::int64_t tick = 0; tick < 100; ++tick) {
       client->show(*receiver, tick);
       touch();

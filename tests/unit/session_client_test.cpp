@@ -166,12 +166,12 @@ TEST(SessionClient, ForceFadesWithin100MillisecondsWithoutNewsAndReturns) {
   for (int i = 0; i < 6000; ++i) {
     ASSERT_TRUE(client.submit(swing.world.now, {.position = {1e-4 * i, 0, 0}}, DeviceContact{{1e-4 * i, 0, 1e-3}, 500}));
     swing.run(1);
-    const double share = client.force_share(swing.world.now);
-    if (i > 100) largest_step = std::max(largest_step, std::abs(share - before));  // once it is live
-    if (share == 0 && before > 0) zero_at = swing.world.now;
-    before = share;
+    const double fraction = client.force_fraction(swing.world.now);
+    if (i > 100) largest_step = std::max(largest_step, std::abs(fraction - before));  // once it is live
+    if (fraction == 0 && before > 0) zero_at = swing.world.now;
+    before = fraction;
     if (i == 1500) {
-      EXPECT_EQ(share, 1);
+      EXPECT_EQ(fraction, 1);
     }
   }
   EXPECT_GT(zero_at, 7'000'000u);

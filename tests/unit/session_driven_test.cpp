@@ -25,7 +25,7 @@ using testing::kMillisecond;
 
 /// Both ends of a device's packets, over a network that loses and delays.
 struct DeviceEnds {
-  explicit DeviceEnds(double loss_share) : loss(loss_share) {
+  explicit DeviceEnds(double loss_fraction) : loss(loss_fraction) {
     const SharedScene device = device_scene(*testing::driven_scene()).value();
     client.send_with(Sender::create(device, device_sender_options({})).value());
     server.receive_with(Receiver::create(device).value());
@@ -244,7 +244,7 @@ Cost cost(const char* name, std::uint64_t seed, bool known) {
 
 /// Figures of the chapter on driven objects: p = 4 %, 0.3 mm, 2 degrees, seeds 1 to 3.
 TEST(Driven, ADeviceThatIsKnownSavesPackets) {
-  for (const auto& [scene, most, share] :
+  for (const auto& [scene, most, fraction] :
        {std::tuple{"push-1dof", 2.0, 0.1}, {"rotate-6dof", 11.0, 0.7}, {"rotate-push-lift", 8.0, 0.6}}) {
     Cost with, without;
     for (const std::uint64_t seed : {1u, 2u, 3u}) {
@@ -257,7 +257,7 @@ TEST(Driven, ADeviceThatIsKnownSavesPackets) {
     std::printf("[ measured ] %s: %.2f packets/s of %.1f bytes, %.2f of %.1f where the device is not known\n", scene,
                 with.packets, with.bytes, without.packets, without.bytes);
     EXPECT_LT(with.packets, most);
-    EXPECT_LT(with.packets, share * without.packets);
+    EXPECT_LT(with.packets, fraction * without.packets);
   }
 }
 

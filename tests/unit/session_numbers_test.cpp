@@ -82,7 +82,7 @@ TEST(SentNumbers, TheRoundTripLeavesOutWhatTheOtherEndHeld) {
   EXPECT_EQ(sent.sample(), std::nullopt) << "nor by what was acknowledged before";
 }
 
-/// Both ends over a way that loses and delays: what is said to be lost was, and the share is right.
+/// Both ends over a way that loses and delays: what is said to be lost was, and the fraction is right.
 TEST(SentNumbers, LossIsFoundOut) {
   SentNumbers sent;
   ReceivedNumbers received;

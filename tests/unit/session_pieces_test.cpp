@@ -185,8 +185,8 @@ TEST(LinePace, FillsALineAfterARoundTripAndLeavesItsQueueShort) {
       const std::uint64_t came = test.came, before = test.now;
       test.worst = 0;
       test.run(test.now + 3'000'000);
-      const double share = static_cast<double>((test.came - came) * line) / static_cast<double>(test.now - before);
-      EXPECT_GT(share, std::min(0.85, 0.85 * 800 * static_cast<double>(line) / static_cast<double>(2 * way + 10'000)))
+      const double fraction = static_cast<double>((test.came - came) * line) / static_cast<double>(test.now - before);
+      EXPECT_GT(fraction, std::min(0.85, 0.85 * 800 * static_cast<double>(line) / static_cast<double>(2 * way + 10'000)))
           << line << " us, way " << way;
       EXPECT_LT(test.worst, 40'000 + 6 * line + way / 4) << line << " us, way " << way;
     }

@@ -157,7 +157,7 @@ TEST(LineRate, NobodyStarves) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint64_t sent = line.sent(k, 60);
     sum += sent;
-    EXPECT_GT(sent, 40'000u) << "half of its share";
+    EXPECT_GT(sent, 40'000u) << "half of its fair fraction";
   }
   EXPECT_GT(sum, 190'000u);
   EXPECT_LT(line.longest_queue(), 250'000u);

@@ -169,12 +169,12 @@ TEST(SessionReturn, AWorldThatPausesIsShownAsItGoesOn) {
       ASSERT_TRUE(visit.client().submit(visit.world.now, {}, {}));
       ASSERT_LE(visit.client(1).shown_tick(visit.world.now), visit.world.tick + 123) << "while it pauses: the clock stands, too";
     }
-    EXPECT_EQ(visit.client().force_share(visit.world.now), pause >= 400 ? 0 : 1) << pause;
+    EXPECT_EQ(visit.client().force_fraction(visit.world.now), pause >= 400 ? 0 : 1) << pause;
     visit.run(2500);
     const std::int64_t behind = visit.world.tick - visit.client(1).shown_tick(visit.world.now);
     EXPECT_GT(behind, 20) << pause << " ms: nothing of the future is shown";
     EXPECT_LT(behind, 150) << pause;
-    EXPECT_EQ(visit.client().force_share(visit.world.now), 1) << pause;
+    EXPECT_EQ(visit.client().force_fraction(visit.world.now), 1) << pause;
   }
 }
 

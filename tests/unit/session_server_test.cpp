@@ -407,7 +407,7 @@ TEST(SessionServer, NoForceFromStatesThatTheRateHeldBack) {
     if (client.status().state != SessionState::live || i < 300) continue;
     const std::int64_t age = world.tick - client.receiver()->tick(0);  // [10 ms]
     old_states += age > 20 ? 1 : 0;
-    if (client.force_share(world.now) == 0) continue;
+    if (client.force_fraction(world.now) == 0) continue;
     ++felt;
     EXPECT_LE(age, 12) << i;
   }

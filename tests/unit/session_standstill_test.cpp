@@ -55,12 +55,12 @@ class Standstill {
   }
 
   bool is_live() const { return client_->status().state == SessionState::live; }
-  double share() const { return share_; }
+  double fraction() const { return fraction_; }
   std::int64_t lag() const { return lag_; }  ///< [ticks] of what is shown behind the server
   // Since forget(), [ms] while more than half of the force was rendered:
   int stale() const { return stale_; }                     ///< in which the picture was older than 150 ms
   std::int64_t worst_lead() const { return worst_lead_; }  ///< ahead of the server
-  double most() const { return most_; }                    ///< largest share since it went on
+  double most() const { return most_; }                    ///< largest fraction since it went on
   int frozen() const { return frozen_; }                   ///< in which the picture stood
   void forget() {
     worst_lead_ = 0;
@@ -120,11 +120,11 @@ class Standstill {
     const Vec3 place{0.01 * std::sin(3e-6 * static_cast<double>(time_)), 0, 0};
     ASSERT_TRUE(client_->submit(client_now(), {.position = place}, DeviceContact{place, 500}));
     const std::int64_t shown = client_->shown_tick(client_now());
-    share_ = client_->force_share(client_now());
-    most_ = std::max(most_, share_);
+    fraction_ = client_->force_fraction(client_now());
+    most_ = std::max(most_, fraction_);
     worst_offset_ = std::max(worst_offset_, std::abs(offset_error()));
     lag_ = tick_ - shown;
-    if (shown >= 0 && share_ > 0.5) {
+    if (shown >= 0 && fraction_ > 0.5) {
       if (lag_ > 150) ++stale_;
       worst_lead_ = std::max(worst_lead_, -lag_);
       if (shown == shown_) ++frozen_;
@@ -140,7 +140,7 @@ class Standstill {
   std::optional<SessionClient> client_;
   sim::Link up_ = sim::Link::create(link(5, of_.loss)).value(), down_ = sim::Link::create(link(6, of_.loss)).value();
   std::int64_t tick_ = -1, lag_ = 0, worst_lead_ = 0, shown_ = -1;
-  double share_ = 0, most_ = 0, worst_offset_ = 0;
+  double fraction_ = 0, most_ = 0, worst_offset_ = 0;
   int frozen_ = 0, stale_ = 0;
 };
 
@@ -161,7 +161,7 @@ TEST(SessionStandstill, NobodyFeelsAPictureOfBefore) {
     Standstill ends(of);
     ends.run(12'000);
     ASSERT_TRUE(ends.is_live()) << of.name();
-    ASSERT_EQ(ends.share(), 1) << of.name();
+    ASSERT_EQ(ends.fraction(), 1) << of.name();
     const std::int64_t usual = ends.lag();
     ends.forget();
     ends.stand();

@@ -232,7 +232,7 @@ TEST(Simulation, InfoDescribesTheFrames) {
 
 /// What the person did with the cube in one run.
 struct Task {
-  double contact_share = 0;  ///< of all ticks
+  double contact_fraction = 0;  ///< of all ticks
   int flips = 0;
   double yaw = 0;       ///< [rad] all turns about the vertical, summed
   double highest = 0;   ///< [m]
@@ -262,7 +262,7 @@ Task run_task(const std::string& name, std::uint64_t seed) {
     EXPECT_TRUE(simulation->step());
     const RigidSample& cube = simulation->frame().objects[0];
     const UserSample& user = simulation->frame().users[0];
-    task.contact_share += user.contact.kind != ContactKind::none;
+    task.contact_fraction += user.contact.kind != ContactKind::none;
     task.yaw += std::abs(cube.angular_velocity.z) * kTick;
     task.highest = std::max(task.highest, cube.pose.position.z);
     task.farthest = std::max(task.farthest, cube.pose.position.x);
@@ -274,7 +274,7 @@ Task run_task(const std::string& name, std::uint64_t seed) {
       up = face;
     }
   }
-  task.contact_share /= static_cast<double>(simulation->ticks());
+  task.contact_fraction /= static_cast<double>(simulation->ticks());
   task.end = simulation->frame().objects[0].pose;
   return task;
 }
@@ -284,16 +284,16 @@ class Tasks : public ::testing::TestWithParam<std::uint64_t> {};
 TEST_P(Tasks, Push1DofReachesTheEndPoint) {
   const Task task = run_task("push-1dof", GetParam());
   EXPECT_NEAR(task.end.position.x, 0.155, 0.006);
-  EXPECT_GT(task.contact_share, 0.4);
-  EXPECT_LT(task.contact_share, 0.7);
+  EXPECT_GT(task.contact_fraction, 0.4);
+  EXPECT_LT(task.contact_fraction, 0.7);
 }
 
 TEST_P(Tasks, Rotate6DofTurnsAndFlips) {
   const Task task = run_task("rotate-6dof", GetParam());
   EXPECT_EQ(task.flips, 3);
   EXPECT_GT(task.yaw, 1.5);
-  EXPECT_GT(task.contact_share, 0.35);
-  EXPECT_LT(task.contact_share, 0.6);
+  EXPECT_GT(task.contact_fraction, 0.35);
+  EXPECT_LT(task.contact_fraction, 0.6);
 }
 
 TEST_P(Tasks, RotatePushLiftBringsTheCubeToTheGoalAndBack) {
@@ -304,8 +304,8 @@ TEST_P(Tasks, RotatePushLiftBringsTheCubeToTheGoalAndBack) {
   EXPECT_GT(task.highest, 0.045) << "lifted well clear of the floor";
   EXPECT_LT(std::hypot(task.end.position.x, task.end.position.y), 0.01) << "back at the start";
   EXPECT_NEAR(task.end.position.z, 0.02, 1e-3) << "and put down";
-  EXPECT_GT(task.contact_share, 0.4);
-  EXPECT_LT(task.contact_share, 0.6);
+  EXPECT_GT(task.contact_fraction, 0.4);
+  EXPECT_LT(task.contact_fraction, 0.6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Tasks, ::testing::Range<std::uint64_t>(1, 11));

@@ -58,7 +58,7 @@ TEST(SpringModes, OfAFreeBodyBeginWithItsRigidMotions) {
       if (motion >= 3) along = cross(along, x);
       moved.insert(moved.end(), {along.x, along.y, along.z});
     }
-    double held = 0;  // share of the motion that the modes span
+    double held = 0;  // fraction of the motion that the modes span
     for (std::size_t k = 0; k < 6; ++k) {
       const double part = product(moved, std::span(*modes).subspan(k * size, size));
       held += part * part / product(moved, moved);

@@ -17,7 +17,7 @@ namespace {
 SharedScene scene_of(const Recording& recording) {
   TraceFrame first = recording.frames[0];
   for (RigidSample& object : first.objects) object.pose = {{0.25, -0.5, 0.125}, {}};
-  return scene_builder(recording.info, first).value().promise({}, {}).build().value();
+  return scene_builder(recording.info, first).value().declare_bounds({}, {}).build().value();
 }
 
 TEST(TraceReplica, DescribesWhatTheSceneDeclares) {

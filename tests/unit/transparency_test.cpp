@@ -93,7 +93,7 @@ TEST(RigidTransparency, TheBlockOfTheTower) {
   EXPECT_NEAR(reduced_stiffness(block(0.1), 700, 0.05), 207, 0.5);
 }
 
-TEST(RigidTransparency, AtTheTolerableDelayTheForceIsTheShareAbove) {
+TEST(RigidTransparency, AtTheTolerableDelayTheForceIsTheFractionAbove) {
   for (const double others : {0.0, 0.5, -0.4}) {
     SteadyPush push = block(0.08);
     push.others = others;
@@ -108,7 +108,7 @@ TEST(RigidTransparency, AtTheTolerableDelayTheForceIsTheShareAbove) {
   EXPECT_EQ(reduced_stiffness(SteadyPush{}, 700, 0.05), 700);
 }
 
-TEST(RigidTransparency, InThreeDimensionsTheShareAlongTheMotionCounts) {
+TEST(RigidTransparency, InThreeDimensionsTheFractionAlongTheMotionCounts) {
   const SteadyPush push = block(0.1);
   EXPECT_NEAR(reduced_stiffness(-push.server_force(), 0.1, 700, 0.05, 1), reduced_stiffness(push, 700, 0.05), 1e-9);
   EXPECT_EQ(reduced_stiffness(-1, 0.1, 700, 0.05, 0), 700);
@@ -163,7 +163,7 @@ TEST(DeformableTransparency, TheSlowImpedanceRisesByTheDecibelsOfTheThesis) {
   EXPECT_NEAR(level, 0.82, 0.02);
 }
 
-TEST(DeformableTransparency, AtTheTolerableDelayTheSlowImpedanceIsTheShareAbove) {
+TEST(DeformableTransparency, AtTheTolerableDelayTheSlowImpedanceIsTheFractionAbove) {
   for (const double hertz : {0.2, 0.5, 1.0, 3.0})
     for (const double weber : {0.05, 0.1, 0.25}) {
       const auto delay = tolerable_delay(kObject, omega(hertz), weber);

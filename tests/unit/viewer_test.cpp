@@ -60,14 +60,14 @@ TEST(Viewer, ThePageHasItsDataWhereItBelongs) {
 }
 
 TEST(Viewer, TheGhostIsWithinATwentiethOfTheBounds) {
-  const auto scene = SceneBuilder().rigid("cube").promise({.visual_position = 2e-3, .visual_rotation = 0.1}, {}).build();
+  const auto scene = SceneBuilder().rigid("cube").declare_bounds({.visual_position = 2e-3, .visual_rotation = 0.1}, {}).build();
   ASSERT_TRUE(scene);
   const GhostBounds ghost = ghost_bounds(**scene);
   EXPECT_DOUBLE_EQ(ghost.rigid.visual_position, 1e-4);
   EXPECT_DOUBLE_EQ(ghost.rigid.visual_rotation, 5e-3);
   EXPECT_EQ(ghost.rigid.haptic, HapticRule::off);
   EXPECT_DOUBLE_EQ(ghost.deformable.visual, 1.5e-5);
-  const auto fine = SceneBuilder().rigid("cube").promise({.visual_position = 1e-5, .visual_rotation = 1e-4}, {}).build();
+  const auto fine = SceneBuilder().rigid("cube").declare_bounds({.visual_position = 1e-5, .visual_rotation = 1e-4}, {}).build();
   ASSERT_TRUE(fine);
   EXPECT_GE(ghost_bounds(**fine).rigid.visual_position, 4e-6);  // the grid can hold it
 }

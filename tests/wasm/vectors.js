@@ -61,7 +61,7 @@ export function decode(tactus, bytes, args) {
   try {
     player = tactus.openPlayer(bytes, {limits: testeeLimits});
     const past = wanted === "playout";
-    if (wanted !== null && (past || !player.scene.eased)) {
+    if (wanted !== null && (past || !player.scene.smoothed)) {
       player.close();
       player = tactus.openPlayer(bytes, {limits: testeeLimits, interpolation: wanted});
     }

@@ -32,7 +32,7 @@ class RigidBounds(_abi.tactus_rigid_bounds):
     visual_position   [m] 3e-4
     visual_rotation   [rad] 2 deg
     weber_fraction    p of the normal force, 0.04
-    perceptual_share, cone_angle [rad], fixed_position [m], fixed_rotation [rad], force_floor [N]   see tactus.h
+    perceptual_fraction, cone_angle [rad], fixed_position [m], fixed_rotation [rad], force_floor [N]   see tactus.h
     """
 
     def __init__(self, **fields: float) -> None:
@@ -73,7 +73,7 @@ class SceneOptions(_abi.tactus_scene_options):
 
 
 class SenderOptions(_abi.tactus_sender_options):
-    """reduction, baseline, first_sequence, key_interval [s], visual_share, haptic_share, layered; rigid and deformable: bounds."""
+    """reduction, baseline, first_sequence, key_interval [s], visual_fraction, haptic_fraction, layered; rigid and deformable: bounds."""
 
     def __init__(self, rigid: RigidBounds | None = None, deformable: DeformableBounds | None = None, **fields: Any) -> None:
         super().__init__()
@@ -92,7 +92,7 @@ class Limits(_abi.tactus_limits):
 
 
 class ReceiverOptions(_abi.tactus_receiver_options):
-    """interpolation: INTERPOLATION_NONE (default), _LINEAR, _HERMITE, _BLENDING, _PLAYOUT; share, shortest [s], longest [s]; limits."""
+    """interpolation: INTERPOLATION_NONE (default), _LINEAR, _HERMITE, _BLENDING, _PLAYOUT; fraction, shortest [s], longest [s]; limits."""
 
     def __init__(self, limits: Limits | None = None, **fields: Any) -> None:
         super().__init__()

@@ -47,7 +47,7 @@ def encode(trace: str | os.PathLike[str] | bytes, rigid_bounds: RigidBounds | No
            profile: str = "main", modes: int = 0, clusters: int = 0, world_size: float = 0, **options: Any) -> Stream:
     """Encode a trace, a path or the bytes of a file, as `tactus encode` does; returns the bytes of a stream file, which declares the bounds.
 
-    profile   "main": velocities lean towards the acceleration, and clients ease into updates; "thesis": linear dead reckoning; and the
+    profile   "main": look-ahead velocities, and clients smooth the errors of updates; "thesis": linear dead reckoning; and the
               profile of meshes
     modes     vibration modes that both ends compute from each mesh, its basis; 0: none
     clusters  of vertices that move alike, of each mesh at most, found on the trace: the basis of bodies that turn and walk; 0: none
@@ -61,7 +61,7 @@ def encode(trace: str | os.PathLike[str] | bytes, rigid_bounds: RigidBounds | No
         raise ValueError(f"there is no profile {profile!r}, but main and thesis")
     if modes and clusters:
         raise ValueError("a mesh has one basis: modes or clusters")
-    is_reduced = options.get("reduction") != _abi.TACTUS_REDUCTION_NONE  # what goes out at every tick needs no easing
+    is_reduced = options.get("reduction") != _abi.TACTUS_REDUCTION_NONE  # what goes out at every tick needs no smoothing
     coding = {"rigid_profile": profiles[profile if is_reduced else "thesis"], "deformable_profile": profiles[profile],
               "spring_modes": modes, "clusters": clusters, "world_size": world_size}
     with TraceReader(trace) as reader, reader.scene(rigid_bounds, deformable_bounds, **coding) as scene:
@@ -244,7 +244,7 @@ def compare(trace: str | os.PathLike[str] | bytes, stream: str | os.PathLike[str
 def read_table(path: str | os.PathLike[str] | bytes) -> dict[str, npt.NDArray[Any]]:
     """A table that `tactus sweep` or `tactus bench` wrote (points.csv), by columns.
 
-    Columns of numbers become float64, with shares such as "2.5%" as fractions (0.025) and empty cells as NaN; others stay text.
+    Columns of numbers become float64, with percentages such as "2.5%" as fractions (0.025) and empty cells as NaN; others stay text.
     """
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))

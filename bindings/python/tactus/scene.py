@@ -125,7 +125,7 @@ class Scene(Handle):
 
     @property
     def info(self) -> _abi.tactus_scene_info:
-        """tick_rate [1/s], rigid, deformables, substreams (counts), position_exp, extrapolation [ticks], baselines, eased, .."""
+        """tick_rate [1/s], rigid, deformables, substreams (counts), position_exp, extrapolation [ticks], baselines, smoothed, .."""
         info = answer(_abi.tactus_scene_info)
         call(core().tactus_scene_get, self.handle, info)
         return info
@@ -289,5 +289,5 @@ def build_scene(objects: Sequence[RigidObject] = (), meshes: Sequence[Mesh] = ()
         for mesh in meshes:
             builder.add_mesh(mesh)
         if rigid_bounds is not None or deformable_bounds is not None:
-            call(core().tactus_scene_builder_promise, builder.handle, rigid_bounds, deformable_bounds, None)
+            call(core().tactus_scene_builder_declare_bounds, builder.handle, rigid_bounds, deformable_bounds, None)
         return builder.build()

@@ -54,14 +54,14 @@ export class Timeline {
   }
 
   xOf(time) {
-    const share = Math.min(Math.max((time - this.#begin) / (this.#end - this.#begin), 0), 1);
-    return this.#left + share * (this.#width - this.#left - 14);
+    const fraction = Math.min(Math.max((time - this.#begin) / (this.#end - this.#begin), 0), 1);
+    return this.#left + fraction * (this.#width - this.#left - 14);
   }
 
   timeAt(clientX) {
     const x = clientX - this.#element.getBoundingClientRect().left;
-    const share = Math.min(Math.max((x - this.#left) / (this.#width - this.#left - 14), 0), 1);
-    return this.#begin + share * (this.#end - this.#begin);
+    const fraction = Math.min(Math.max((x - this.#left) / (this.#width - this.#left - 14), 0), 1);
+    return this.#begin + fraction * (this.#end - this.#begin);
   }
 
   draw() {

@@ -128,7 +128,7 @@ Json signals_point(Request& request) {
                               {"bytes", r.bytes},
                               {"largest_error", r.largest},
                               {"rms_error", r.rms},
-                              {"share_of_permitted", r.worst},
+                              {"fraction_of_permitted", r.worst},
                               {"samples_over", r.over},
                               {"time_per_sample_s", r.time}});
   return out;

@@ -3,12 +3,12 @@
 """Rate against error of meshes that move freely, with and without clusters, beside MPEG-4 FAMC.
 
     tests/bench/peers/animations.py TACTUS FOLDER... [-o OUT]
-    tests/bench/peers/animations.py --points OUT/points.csv [-o OUT]    # figures and shares of what was measured before
+    tests/bench/peers/animations.py --points OUT/points.csv [-o OUT]    # figures and fractions of what was measured before
 
 A FOLDER holds one OBJ file per frame and is named after its clip. It is read by `tactus import mesh` so that the diagonal of the box
 of all frames is 1024 mm: a unit, its 1024th part, is 1 mm. Writes points.csv, beside-famc.csv and a figure for each clip to OUT, for
 which it needs matplotlib.
-beside-famc.csv: the shares of FAMC's bits at which ours has the same KG error. famc.csv holds what FAMC's reference software made of four clips.
+beside-famc.csv: the fractions of FAMC's bits at which ours has the same KG error. famc.csv holds what FAMC's reference software made of four clips.
 """
 import argparse
 import csv
@@ -102,7 +102,7 @@ def draw(clip, points, famc, out):
 
 
 def beside(points, famc, least=0.4, largest=1.1):
-    """Rows of beside-famc.csv: least and largest share of FAMC's bits at the same KG error, of its points from 0.4 to 1.1 %."""
+    """Rows of beside-famc.csv: least and largest fraction of FAMC's bits at the same KG error, of its points from 0.4 to 1.1 %."""
     rows = []
     for clip in dict.fromkeys(p["clip"] for p in famc):
         for is_whole in (True, False):
@@ -110,10 +110,10 @@ def beside(points, famc, least=0.4, largest=1.1):
             others = [p for p in others if least <= float(p["kg_percent"]) <= largest]
             for setting in ("no basis", "40 clusters"):
                 ours = [p for p in points if p["clip"] == clip and p["setting"] == setting]
-                shares = [rate / float(p["bits_per_vertex"]) for p in others if (rate := rate_at(ours, float(p["kg_percent"])))]
-                if shares:
+                fractions = [rate / float(p["bits_per_vertex"]) for p in others if (rate := rate_at(ours, float(p["kg_percent"])))]
+                if fractions:
                     rows.append([clip, "whole clip" if is_whole else "8 to 57 frames", setting.replace("no basis", "none"),
-                                 f"{min(shares):.2f}", f"{max(shares):.2f}"])
+                                 f"{min(fractions):.2f}", f"{max(fractions):.2f}"])
     return rows
 
 
