@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measure the vectors: run them against mutants of the second decoder and tell which mutants no vector catches (README.md).
+"""Measure the vectors: run them against mutants of the second decoder and list which mutants no vector catches (README.md).
 
 A mutant differs from decoder.py and its modules in one place. It is caught by a vector whose answer changes, or at which it crashes
 or hangs. Exit status: 0 done, 1 the share asked for is missed or the list of equivalent mutants is wrong, 2 wrong use.

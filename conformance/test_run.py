@@ -327,13 +327,13 @@ class DifferentialTest(unittest.TestCase):
             self.assertEqual(differential.main(["--testee", "true", "--only", "rigid"], HERE), 2)
         self.assertEqual(err.getvalue(), "differential.py: rigid: matches no valid case\n")
 
-    def test_mended_damage_passes_the_check_values(self) -> None:
+    def test_repaired_damage_passes_the_check_values(self) -> None:
         damaged = bytearray(VALID)
         damaged[13] ^= 1
         self.assertEqual(len(differential.sections(VALID)), 1)
-        self.assertEqual(differential.mended(VALID), VALID)
+        self.assertEqual(differential.repaired(VALID), VALID)
         self.assertEqual(differential.expected(bytes(damaged), None)[0], 1)
-        self.assertEqual(differential.expected(differential.mended(bytes(damaged)), None)[0], 0)
+        self.assertEqual(differential.expected(differential.repaired(bytes(damaged)), None)[0], 0)
 
 
 class DevicePathTest(unittest.TestCase):

@@ -60,7 +60,7 @@ struct DeformableThresholds {
   friend bool operator==(const DeformableThresholds&, const DeformableThresholds&) = default;
 };
 
-/// When the force on a rigid object must be told: once it is off by more than p max(|f|, floor).
+/// When the force on a rigid object must be sent: once it is off by more than p max(|f|, floor).
 struct LoadThresholds {
   double weber_fraction = 0.1;  ///< p
   double force_floor = 0.5;     ///< [N]
@@ -117,7 +117,7 @@ Result<RigidPose> to_grid(const Pose& pose, unsigned position_exp) noexcept;
 Pose to_pose(const RigidPose& pose, unsigned position_exp) noexcept;
 
 // ==== elastic body ====
-// What a deformable object is made of, told so that a client can work out how its own device deforms it. spec/55-elastic.md section 2.
+// What a deformable object is made of, declared so that a client can compute how its own device deforms it. spec/55-elastic.md section 2.
 
 struct ElasticMaterial {
   double young = 0;    ///< E [N/m^2], above 0, up to 1e15
@@ -231,8 +231,8 @@ struct DeformableObject {
   SpringBasis spring_basis;    ///< main: in place of `basis`, which a Scene then computes
   ClusterBasis cluster_basis;  ///< main: the same
   std::vector<std::uint8_t>
-      stiffness;                    ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not told
-  std::optional<ElasticBody> body;  ///< main, not layered: what it is made of; none: not told
+      stiffness;                    ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not declared
+  std::optional<ElasticBody> body;  ///< main, not layered: what it is made of; none: not declared
   friend bool operator==(const DeformableObject&, const DeformableObject&) = default;
 };
 
@@ -243,7 +243,7 @@ Result<std::uint8_t> stiffness_level(double stiffness) noexcept;
 /// [N/m]
 double stiffness_of_level(std::uint8_t level) noexcept;
 /// [N/m] At a point of a triangle, by barycentric weights; infinite where a corner that does not move has one.   time O(1)
-/// pre  the object tells its stiffness
+/// pre  the object declares its stiffness
 double stiffness_at(const DeformableObject& object, std::uint32_t triangle, const std::array<double, 3>& weights) noexcept;
 
 /// A surface on a scene's grid; all other fields keep their defaults.

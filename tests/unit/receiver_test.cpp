@@ -55,7 +55,7 @@ std::vector<std::int64_t> image(Receiver& receiver, std::int64_t now) {
   return out;
 }
 
-TEST(Receiver, TellsWhatItDecoded) {
+TEST(Receiver, ReportsWhatItDecoded) {
   const SharedScene scene = testing::scene_of_every_kind(kSquares);
   auto receiver = Receiver::create(scene).value();
   EXPECT_EQ(receiver.scene(), scene);

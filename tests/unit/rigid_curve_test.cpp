@@ -195,7 +195,7 @@ TEST(Easing, OffsetShrinksInAStraightLine) {
     EXPECT_EQ(path.pose(predictor, 10 + t).position[0], 1600 - 100 * std::max<std::int64_t>(16 - t, 0)) << t;
 }
 
-TEST(Easing, KeepsTheSixteenthsThatAreTold) {
+TEST(Easing, KeepsTheSixteenthsThatAreSignalled) {
   const SharedScene scene = eased_scene();
   const RigidPredictor predictor(*scene);
   for (const auto& [keep, left] : {std::pair{0, 1600}, {1, 1500}, {2, 1200}, {3, 800}}) {

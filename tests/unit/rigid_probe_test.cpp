@@ -173,7 +173,7 @@ TEST_F(ProbeTest, ProxyMovesWithTheObject) {
   expect_near(after.proxy - before.proxy, poses[0].position, 1e-15);
 }
 
-TEST_F(ProbeTest, BoxThatRunsIntoARestingProbeIsFelt) {
+TEST_F(ProbeTest, BoxThatRunsIntoARestingProbeIsRendered) {
   RigidProbe probe(objects, touch);
   poses[0].position = {-0.05, 0, 0};
   EXPECT_EQ(probe.move({0, 0, 0}, false, poses).contact.kind, ContactKind::none);

@@ -191,7 +191,7 @@ TEST(SampleTrack, VelocitiesOfANoisyTrackerAreThoseOfSeveralSamples) {
   EXPECT_LT(std::sqrt(square), 6.5e-3);
 }
 
-/// Samples that are closer than ticks: what is told at ticks follows from about a tick, not from the noise of two neighbours.
+/// Samples that are closer than ticks: what is returned at ticks follows from about a tick, not from the noise of two neighbours.
 TEST(SampleTrack, DenseSamplesMoveOverATick) {
   const auto motion = [](double t) {
     return along_x(t + (std::llround(t * 2e4) % 2 == 0 ? 1e-5 : 0));

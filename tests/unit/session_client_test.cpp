@@ -213,7 +213,7 @@ TEST(SessionClient, ShowsASceneOfMeshesOnly) {
   EXPECT_LE(worst, DeformableThresholds{}.visual + 1e-6);
 }
 
-TEST(SessionClient, TellsAtOnceOfBoundsThatNoDeviceCanKeep) {
+TEST(SessionClient, ReportsAtOnceBoundsThatNoDeviceCanKeep) {
   for (const double position : {0.0, -1.0, std::nan("")}) {
     const auto client = SessionClient::create({.role = Role::participant, .device = {.position = position}});
     ASSERT_FALSE(client) << position;

@@ -244,7 +244,7 @@ TEST(DeformableSimulation, DivergenceIsAnErrorWithARemedy) {
   FAIL() << "it did not diverge";
 }
 
-TEST(DeformableSimulation, TellsMethodReasonAndError) {
+TEST(DeformableSimulation, ReportsMethodReasonAndError) {
   const Scene scene = shipped("membrane");
   auto simulation = Simulation::create(scene, {.seed = 1, .grip = {}, .channel = {}, .estimate_every = 10});
   ASSERT_TRUE(simulation);
@@ -472,7 +472,7 @@ TEST(DeformableRest, ReportsShapesWhileItMovesOrIsTouched) {
 }
 
 /// A slab that falls 1.3 m, 5 mm in a tick, onto a probe that keeps still.
-TEST(DeformableRest, AFastSlabIsFelt) {
+TEST(DeformableRest, AFastSlabIsRendered) {
   for (const double height : {0.3, 1.3, 20.0}) {
     auto scene = parse_scene(
                      "name = \"drop\"\nduration = 3.0\ngravity = [0, 0, -9.81]\n"

@@ -89,8 +89,8 @@ def check(rows: list[Row], report: dict) -> str:
     assert sum(len(r.texts("tactus.packet")) for r in sent) == traffic["sent"]["packets"], traffic
     # What came when the client ended may not have been read: it heard what it acknowledged at least, and at most all.
     last = [r for r in sent if r["tactus.ack.number"]][-1]
-    told = len([n for n in came if n <= last.number("tactus.ack.number")]) - last.number("tactus.ack.missing_count")
-    assert 0 < told <= traffic["heard"]["datagrams"] <= len(came), (told, traffic, len(came))
+    acknowledged = len([n for n in came if n <= last.number("tactus.ack.number")]) - last.number("tactus.ack.missing_count")
+    assert 0 < acknowledged <= traffic["heard"]["datagrams"] <= len(came), (acknowledged, traffic, len(came))
     assert any(r.number("tactus.state.live") == 1 for r in sent) and traffic["heard"]["packets"] > 0
     return f"{len(rows)} datagrams, {len(sent)} up, {len(came)} down"
 
