@@ -222,7 +222,7 @@ double RigidEncoder::haptic_ratio_of(std::uint32_t object, const RigidPose& show
     if (contact.kind == ContactKind::none || contact.object != object) continue;
     if (triggers_.haptic == HapticRule::fixed) return within(bounds_of(object).fixed, shown, truth_.state(object)) ? 0 : kOutside;
     const Vec3 estimate = contact_force(contact, to_pose(shown, scene_.grid.position));
-    const double ratio = force_ratio(triggers_, contact_force(contact, truth_.samples()[object].pose), estimate);
+    const double ratio = haptic_ratio(triggers_, contact_force(contact, truth_.samples()[object].pose), estimate);
     if (std::isnan(ratio)) return kOutside;  // forces too large to compare
     out = std::max(out, ratio);
   }

@@ -192,12 +192,12 @@ class Page {
     if (this.picture) this.picture.show(tick);
     else this.model.moveTo(tick);
     this.timeline.moveTo(this.clock.time);
-    this.#showTick(tick);
+    this.#fillReadings(tick);
     const isPlace = !this.clock.plays && !this.model.isLive;
     if (isPlace) history.replaceState(null, "", `#t=${this.clock.time.toFixed(3)}`);
   }
 
-  #showTick(tick) {
+  #fillReadings(tick) {
     const {model, clock, picture} = this;
     byId("play").textContent = clock.plays || clock.follows ? "Pause" : "Play";
     byId("follow").disabled = clock.follows;
