@@ -117,7 +117,7 @@ sys.stdout.write(reply.stdout[:place].decode() + chr(reply.stdout[place] ^ 1) + 
 sys.exit(reply.returncode)""")
         self.expect(1, "0 passed, 3 failed, 0 skipped", "--testee", testee)
 
-    def test_program_that_only_tells_its_usage(self) -> None:
+    def test_program_that_only_prints_its_usage(self) -> None:
         out = self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", self.command("raise SystemExit(1)"), "--only", "*/001-*")
         self.assertIn("rejected with exit status 1 and no line of JSON; must be accepted", out)
 

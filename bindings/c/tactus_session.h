@@ -101,7 +101,7 @@ typedef struct tactus_server_options {
 } tactus_server_options;
 
 TACTUS_API tactus_status tactus_server_options_init(tactus_server_options* options, size_t size);
-/* in   entropy  64 bits from the system that nobody else can tell */
+/* in   entropy  64 bits from the system that nobody else can guess */
 TACTUS_API tactus_status tactus_server_create(const tactus_scene* scene, const tactus_server_options* options, uint64_t entropy,
                                               uint64_t now, tactus_server** server, tactus_error* error);
 TACTUS_API void tactus_server_destroy(tactus_server* server);

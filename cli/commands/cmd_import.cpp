@@ -314,7 +314,7 @@ void add_text_options(Command& command, ImportOptions& options) {
       ->type_name("UNIT");
   command
       .add_option("--quaternion-order", options.quaternion_order,
-                  "Order in which the columns of a rotation are listed [as they are called, or as the first one tells]")
+                  "Order in which the columns of a rotation are listed [as they are called, or as the first one shows]")
       ->one_of({"wxyz", "xyzw"})
       ->type_name("ORDER");
   command.add_option("--date-order", options.date_order, "Which number of 05/06/2024 is the month [asked for where it matters]")

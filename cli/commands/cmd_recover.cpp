@@ -247,7 +247,7 @@ Outcome recover_recording(const RecoverOptions& options, mcap::Reader& reader) {
   report.warnings.push_back(fmt::format("{} of {} recovered, as another program wrote them", counted(copied.messages, "message"),
                                         counted(reader.channels().size(), "topic")));
   if (const auto announced = reader.files().announced_messages; announced && *announced != copied.messages)
-    report.warnings.push_back(fmt::format("metadata.yaml tells of {} messages", *announced));
+    report.warnings.push_back(fmt::format("metadata.yaml lists {} messages", *announced));
   add_losses(losses, report);
   if (reader.cut_short())
     report.warnings.push_back("the recording ends without its index" +

@@ -387,7 +387,7 @@ void setup_sim(Command& app, Action& action) {
                   "Also write the local stiffness of deformable objects (CSV, and a figure beside it)")
       ->type_name("FILE");
   command.add_flag("--check", options->check,
-                   "Simulate the same again beside it with half the step, and with a shape in each tick, and tell the difference "
+                   "Simulate the same again beside it with half the step, and with a shape in each tick, and report the difference "
                    "in motion, shapes, forces, energies and the work of hands [costs two to four times the time]");
   command.add_flag("--codec", options->codec,
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");

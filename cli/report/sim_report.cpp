@@ -54,7 +54,7 @@ constexpr double kUnder = 0.5;        // of the server's force, less
 constexpr double kUnderForce = 0.25;  // [N]
 
 /// In 130 loops of one, two and four users at a cube with a tremor of 0.05 mm, what died away within a second swung by at most 0.95 mm, and
-/// what did not by 1.3 mm and more. The least energy of the contacts does not tell them apart: -176 and -163 mJ in one that was stable,
+/// what did not by 1.3 mm and more. The least energy of the contacts does not distinguish them: -176 and -163 mJ in one that was stable,
 /// -115 and -62 mJ in one that was not.
 void warn_of_swing(const sim::Scene& scene, std::size_t user, const TouchReport& touch, bool has_network, Report& report) {
   if (touch.swing <= kSwing + kTremors * scene.users[user].tremor) return;

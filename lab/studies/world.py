@@ -18,7 +18,7 @@ NAMES = {"declared": "declared objects"}
 FIGURE = 3  # the row whose seed is drawn: 16 servers
 FACTORS = {"physics": ["physics_us"],
            "sessions": ["session_us", "truth_us", "truth_of_1000_us", "look_us", "tell_us", "packet_us", "packet_of_1000_us"],
-           "declared": ["truth_of_1000_us", "packet_of_1000_us"]}  # objects that are declared and have nothing to tell
+           "declared": ["truth_of_1000_us", "packet_of_1000_us"]}  # objects that are declared and have nothing to send
 QUANTITIES = [  # key, heading, scale, unit in CSV
     ("moving", "move", 1, ""), ("members", "in interest", 1, ""), ("told", "of them move", 1, ""), ("changes_per_s", "lod changes/s", 1, ""),
     ("down", "down [kbit/s]", 1e-3, "_bit_per_s"), ("down_most", "most [kbit/s]", 1e-3, "_bit_per_s"),

@@ -154,7 +154,7 @@ class Trial:
         else:
             self.link = Program("link", "--listen", "0", "--to", port, "--link", "delay=20ms")
             self.port = self.link.wait(lambda line: re.search(r":(\d+)\b", line))[1]
-        self.hand = self.join("felt.mcap")
+        self.hand = self.join("client.mcap")
         self.seat = self.server.wait(event("seated"))
         time.sleep(2.5)
         self.begin = time.monotonic()
@@ -198,7 +198,7 @@ class Trial:
             self.link.end()
         seats = [e for e in map(event("seated"), self.server.lines) if e]
         assert {(e["client"], e["user"]) for e in seats} == {(self.seat["client"], "hand")}, seats
-        rendered = rows_of("again.mcap" if self.kind == "killed" else "felt.mcap", "force")
+        rendered = rows_of("again.mcap" if self.kind == "killed" else "client.mcap", "force")
         self.zero = rendered[-1][0] - round(1000 * (end - self.begin))  # the tick at which it happened, about
         return rendered, rows_of("served.mcap", "server_force")
 

@@ -113,7 +113,7 @@ TEST(CsvPace, CopiesAndTruePausesAreNoBursts) {
   EXPECT_EQ(paused.frames[10].tick, 100);
 }
 
-/// Of a mouse or a touch screen, which tell when something happened.
+/// Of a mouse or a touch screen, which report when something happened.
 TEST(CsvPace, EventsAreNoBursts) {
   std::ostringstream text;
   text << "t,x,y,z\n";

@@ -213,7 +213,7 @@ TEST_F(ProbeTest, TurnedObjectTurnsTheForce) {
   expect_near(hit.force, 0.63 * normal, 1e-12);
 }
 
-/// Who tells the probe what moves pays less and feels the same, bit for bit.
+/// Who names to the probe what moves pays less and feels the same, bit for bit.
 TEST(RigidProbe, AttendedOnlyFeelsTheSame) {
   Random random(3);
   const auto any = [&random](double size) { return random.uniform(-size, size); };

@@ -236,7 +236,7 @@ TEST(Sender, NothingChangesAfterAnError) {
   EXPECT_GT(packets, 100u);
 }
 
-/// A jump that no update can name in one: the next tick tells the rest.
+/// A jump that no update can name in one: the next tick sends the rest.
 TEST(Sender, AJumpAcrossTheWholeGridTakesTwoUpdates) {
   SceneSpec spec = testing::spec_of(1);
   spec.objects[0].initial.position = {-2100000000, 0, 0};

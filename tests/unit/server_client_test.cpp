@@ -135,7 +135,7 @@ TEST(Server, DeclaresTheStiffnessToClientsThatRenderByIt) {
 }
 #endif
 
-/// A surface that stays where it was while the device goes 2 mm deeper in 20 ms: softer by what the declaration tells of it.
+/// A surface that stays where it was while the device goes 2 mm deeper in 20 ms: softer by what is declared of it.
 TEST(Compensation, RendersASurfaceByTheStiffnessThatIsDeclared) {
   Scene scene;
   scene.users.resize(1);

@@ -229,7 +229,7 @@ TEST(ReceivedNumbers, AfterThirtyTwoTheAcknowledgementIsDueAtOnce) {
   }
   EXPECT_EQ(numbers.due(), 100 + 10'000);
   numbers.accept(32, 3200, Asks::never, kPatience);
-  EXPECT_EQ(numbers.due(), 3200) << "though it does not ask: nobody else tells of it";
+  EXPECT_EQ(numbers.due(), 3200) << "though it does not ask: nobody else reports it";
   numbers.acknowledge(3400);
   numbers.accept(33, 3500, Asks::soon, kPatience);
   EXPECT_EQ(numbers.due(), 3500 + 10'000);

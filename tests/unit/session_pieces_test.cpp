@@ -139,7 +139,7 @@ struct PacedLine {
         if (answer_at == 0) answer_at = now + 10'000;
       }
       if (answer_at == 0 || now < answer_at + way) continue;
-      tell();
+      report();
     }
   }
   void send() {
@@ -157,7 +157,7 @@ struct PacedLine {
     free_at = now + waits + line;
     arrivals.emplace(free_at + way, number);
   }
-  void tell() {
+  void report() {
     for (; unreported > 0; --unreported, --on_way, ++came) pace.arrived();
     const auto arrived = static_cast<std::int64_t>(newest_at + way);
     const std::int64_t sample = arrived - static_cast<std::int64_t>(sent_at[newest]);

@@ -305,7 +305,7 @@ double force_difference(double visual) {
 
 TEST(DeformableSimulation, ClientFeelsTheDecodedShape) {
   const double fine = force_difference(1e-6), coarse = force_difference(2e-3);
-  EXPECT_GT(coarse, 2 * fine) << "a coarser shape must be felt";
+  EXPECT_GT(coarse, 2 * fine) << "a coarser shape must show in the force";
 }
 
 // ==== sim deformable rest ====

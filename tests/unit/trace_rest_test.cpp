@@ -42,7 +42,7 @@ TEST(Trace, AnObjectThatRestsIsWrittenOnce) {
   EXPECT_EQ(count[object + "/twist"], changes);
 }
 
-/// Who tells what changed gets the same file; who leaves ticks out, too.
+/// Who marks what changed gets the same file; who leaves ticks out, too.
 TEST(Trace, WhatIsMarkedAsChangedIsAllThatIsLookedAt) {
   for (const std::int64_t stride : {1, 3}) {
     Recording recording = make_recording(60);

@@ -236,7 +236,7 @@ TEST(PressedObject, WhoHoldsStillFeelsBothSpringsWhateverTheDelay) {
     }
 }
 
-/// Equation 4.39, whose approximation 4.45 tells 37.5 ms for 10 %; here a tick passes until the object gives way (T_c of figure 4.14).
+/// Equation 4.39, whose approximation 4.45 gives 37.5 ms for 10 %; here a tick passes until the object gives way (T_c of figure 4.14).
 TEST(PressedObject, DelayRaisesThePeakAsTheTransferFunctionsPredict) {
   const DeformableCoupling coupling{100, 2, 0.1, 340, 5, 340};
   const double omega = std::numbers::pi;  // 0.5 Hz

@@ -70,7 +70,7 @@ const tests = {
     assert.equal(after.follows, true);
     assert.equal(after.time, after.duration);
     assert.equal((await checked(tab)).isEqual, true);
-    // What the server tells, against what the page decodes; and the check can fail, for as long as a slow page takes to draw it.
+    // What the server sends, against what the page decodes; and the check can fail, for as long as a slow page takes to draw it.
     const received = await tab.run(`new Promise((done) => {
       const {model} = tactusView.page;
       const append = model.append.bind(model);

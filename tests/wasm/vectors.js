@@ -40,7 +40,7 @@ export function expand(bytes, repeat) {
   return out;
 }
 
-// What of the declaration the interface tells.
+// What of the declaration the interface returns.
 function headerOf(scene) {
   const header = {tick_rate: scene.tickRate, objects: scene.rigid.map(({name, dof}) => ({name, dof}))};
   if (scene.deformables.length > 0) {

@@ -106,7 +106,7 @@ def main(args: list[str]) -> None:
         line_with(dumpcap, r"(File: )")
         server = start(tactus, "serve", "rotate-push-lift", "-p", "4%", "--listen", "0", "--duration", "100s", "--json")
         port = line_with(server, r":(\d+)$")
-        player = start(tactus, "join", port, "--scene", "rotate-push-lift", "-o", work / "felt.mcap", "--duration", "3s", "--json")
+        player = start(tactus, "join", port, "--scene", "rotate-push-lift", "-o", work / "client.mcap", "--duration", "3s", "--json")
         observer = start(tactus, "join", port, "--duration", "3s", "--json")
         reports = [report_of(program) for program in (player, observer)]
         server.send_signal(signal.SIGINT)  # once both have left
