@@ -21,7 +21,7 @@ bool is_terminal(int stream);
 bool is_capable_terminal(int stream);
 /// May text on this stream be emphasised: a terminal, and NO_COLOR is not set.
 bool is_coloured(int stream);
-/// Characters of a line; 80 where the terminal does not tell.
+/// Characters of a line; 80 where the terminal does not report it.
 std::size_t columns_of(int stream);
 
 // ==== progress ====

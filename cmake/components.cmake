@@ -96,7 +96,7 @@ function(tactus_missing out)
 endfunction()
 
 # tactus_component(NAME dir required...): build dir/ as TACTUS_WITH_<NAME> says.
-#   AUTO  when everything required is there; else one line tells what is left out and what brings it
+#   AUTO  when everything required is there; else one line says what is left out and what brings it
 #   ON    what is missing is an error
 #   OFF   not at all
 function(tactus_component name dir)

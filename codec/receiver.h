@@ -48,7 +48,7 @@ class Receiver {
   ///              arriving in its own tick (R-FIL-7)
   /// out  what to acknowledge: substream and sequence
   /// time < 2 us for one rigid update; 60 us for 714 vertices and 48 modes; no allocation.
-  /// err  advice() tells how to react. truncated, malformed, invalid: R-PKT, R-RIG, R-DEF, R-RNG; limit_exceeded R-PKT-1;
+  /// err  advice() says how to react. truncated, malformed, invalid: R-PKT, R-RIG, R-DEF, R-RNG; limit_exceeded R-PKT-1;
   ///      state R-PKT-5: the packet was decoded before, or comes later than all that are held; R-PKT-4: its baseline is not held, as
   ///      an earlier packet is lost or late; R-PKT-7: its number belongs to another sender or follows a long outage, and all baselines
   ///      are dropped

@@ -134,8 +134,8 @@ class Sender {
   /// in   factor  1 to 64; it is limited to these. 1: the bounds as given
   void set_widening(double factor) noexcept;
 
-  /// In a scene with interest: where its client looks from, from the next tick on, so that what is far is told with wider bounds or not at all
-  /// (SceneBuilder::interest()). Before the first call all rigid objects are told in full; where no place is known, none.
+  /// In a scene with interest: where its client looks from, from the next tick on, so that what is far is sent with wider bounds or not at all
+  /// (SceneBuilder::interest()). Before the first call all rigid objects are sent in full; where no place is known, none.
   /// in   places  [m] at most two: its device, and its eyes or whatever stands for them. Others are ignored.   time 10 ns
   void look_from(std::span<const Vec3> places) noexcept;
 
@@ -145,7 +145,7 @@ class Sender {
   void forget_last(std::size_t substream) noexcept;
 
   /// Know the device of the one receiver, which may drive objects then (SceneBuilder::driven()): those that it pushes or holds are sent when
-  /// they leave the way that the receiver works out from its own device. Without it the scene's driven objects are coded as any other.
+  /// they leave the way that the receiver computes from its own device. Without it the scene's driven objects are coded as any other.
   /// in   path  where the device is at each tick that is encoded, with all packets up to then.   allocates
   void know(std::shared_ptr<const DevicePath> path);
 

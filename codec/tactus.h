@@ -25,7 +25,7 @@
 /// examples/ continues with losses, sessions, deformable objects and traces.
 ///
 /// Errors are values: every function that can fail returns a Result, whose Error names a class and a rule of the specification.
-/// describe() explains it, remedy() suggests a fix, advice() tells a receiver how to react. Nothing throws but std::bad_alloc,
+/// describe() explains it, remedy() suggests a fix, advice() says how a receiver should react. Nothing throws but std::bad_alloc,
 /// from SceneBuilder and from writing files. After create() a Sender, Receiver and Player allocate nothing. Threads: a Scene never
 /// changes and may be shared; any other object is used by one thread at a time. Spans are valid until the next call of the object that
 /// returned them, unless its header says otherwise.

@@ -94,7 +94,7 @@ class Recorder(RangeDecoder):
 
 
 class Writer:
-    """A range decoder that is told what it decodes, and encodes it. The payloads of a packet are in `made`."""
+    """A range decoder that is given what it decodes, and encodes it. The payloads of a packet are in `made`."""
     elements: Elements
     made: list[RangeEncoder] = []
     range = code = 0

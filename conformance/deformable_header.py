@@ -41,7 +41,7 @@ class DeformableObject:
     fixed: Optional[list[int]] = None                       # main: of a basis to compute
     clusters: Optional[list[int]] = None                    # main: of a basis of clusters, by vertex
     blend: int = 0                                          # with clusters
-    stiffness: Optional[bytes] = None                       # levels, if told
+    stiffness: Optional[bytes] = None                       # levels, if declared
     body: Optional[ElasticBody] = None                      # main
 
 

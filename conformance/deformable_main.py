@@ -101,7 +101,7 @@ def mode_unit(mode_step: int, state: MainState) -> int:
 
 
 class MainCodec:
-    """Decodes packets of one deformable object; what follows from its surface is worked out once."""
+    """Decodes packets of one deformable object; what follows from its surface is computed once."""
 
     def __init__(self, item: DeformableObject):
         self.item = item

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compare a decoder, the testee, with decoder.py on damaged vectors, or both ends of a session with session.py (README.md).
 
-Damage is seeded: the same seed and number give the same file. Check values are mended after most of it, so that it reaches the code
+Damage is seeded: the same seed and number give the same file. Check values are repaired after most of it, so that it reaches the code
 behind them. Exit status: 0 no difference, 1 a difference, 2 wrong use. Python's standard library only; POSIX.
 """
 from __future__ import annotations
@@ -61,7 +61,7 @@ def sections(data: bytes) -> list[tuple[int, int, int]]:
         at = payload + size + 4
 
 
-def mended(data: bytes) -> bytes:
+def repaired(data: bytes) -> bytes:
     out = bytearray(data)
     for begin, _, end in sections(data):
         struct.pack_into("<I", out, end, zlib.crc32(out[begin:end]))
@@ -126,7 +126,7 @@ def make_case(vectors: Vectors, seed: int, number: int) -> tuple[bytes, Optional
         other = vectors.choose(rng)
         data = damaged_section(data, other, rng) if rng.randrange(4) else damaged_bytes(data, other, rng)
     if rng.randrange(8):
-        data = mended(data)
+        data = repaired(data)
     mode = rng.choice([None, None, "none", "device", "linear", "hermite", "blending", "playout"])
     return data, mode if last_tick(data) <= LATEST_TICK else None
 

@@ -27,7 +27,7 @@ class Shape(NamedTuple):
 
 
 class Shapes:
-    """Those of one body, worked out as far as they are asked for. `path` is that of the device."""
+    """Those of one body, computed as far as they are asked for. `path` is that of the device."""
 
     def __init__(self, scene: Declaration, item: DeformableObject, path: DevicePath):
         self.item, self.body, self.path = item, item.body, path
@@ -55,7 +55,7 @@ class Shapes:
         self.shape(t // self.ticks)
 
     def advance(self, n: int) -> None:
-        """Works out shape n + 1, the next one."""
+        """Computes shape n + 1, the next one."""
         shape = self.shapes[-1]
         pushes, proxy = self.pushes(shape, n)
         if not pushes and not shape.moves:

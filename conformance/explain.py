@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Decode one packet of a stream file and tell every step as Markdown tables; or its scene declaration, or what losses do to it."""
+"""Decode one packet of a stream file and explain every step as Markdown tables; or its scene declaration, or what losses do to it."""
 import argparse
 import struct
 import sys
@@ -125,7 +125,7 @@ class Found:
 
 
 def narrate():
-    """From now on decoders tell what they do."""
+    """From now on decoders record what they do."""
     rigid.Models = deformable_main.Models = NamedModels
     load.InitialModels = NamedInitialModels
     deformable_thesis.ThesisModels = NamedThesisModels
@@ -157,7 +157,7 @@ def vector(v) -> str:
     return ", ".join(str(c) for c in v)
 
 
-def tell_rigid(packet, scene):
+def explain_rigid(packet, scene):
     for update in packet.updates:
         base, state = Found.base.states[update.object], packet.moment.states[update.object]
         position, rotation = rigid.predict(scene, base, packet.tick)
@@ -174,14 +174,14 @@ def tell_rigid(packet, scene):
             table("held | point | normal | drag", [f"| {held} | {vector(point)} | {vector(normal)} | {drag} |"])
 
 
-def tell_load(packet, scene):
+def explain_load(packet, scene):
     for i, (before, after) in enumerate(zip(Found.base.vectors, packet.state.vectors)):
         names = ["external", "hold", *(f"push {j}" for j in range(scene.loads.users))]
         print(f"Object {scene.moving()[i]}, x 2^-{scene.loads.force_exp} N:\n")
         table("vector | in the baseline | decoded", [f"| {n} | {vector(b)} | {vector(a)} |" for n, b, a in zip(names, before, after)])
 
 
-def tell_main(packet, codec):
+def explain_main(packet, codec):
     state, base = packet.state, Found.base
     h = deformable_main.haptic_bound(state.haptic_index)
     touch = f"triangle {state.triangle}, haptic index {state.haptic_index}: h = {h}" if state.touched else "no touch"
@@ -191,11 +191,11 @@ def tell_main(packet, codec):
     if codec.item.layered:
         table("vertex | u", [f"| {v} | {vector(state.u[3 * v:3 * v + 3])} |" for v in packet.vertices])
     else:
-        tell_vertices(packet, codec, state, base)
+        explain_vertices(packet, codec, state, base)
 
 
-def tell_vertices(packet, codec, state, base):
-    """Every step of section 7, worked out again from the states before and after a packet without layers."""
+def explain_vertices(packet, codec, state, base):
+    """Every step of section 7, computed again from the states before and after a packet without layers."""
     item, tree = codec.item, codec.hierarchy
     expected = codec.expect(base, state.tick)
     codec.fade(base, state.tick, deformable_main.Known(deformable_main.ALL, set(), {}), expected)
@@ -215,7 +215,7 @@ def tell_vertices(packet, codec, state, base):
     table("vertex | expected | predicted | bound | step | r | u | correction", rows)
 
 
-def tell_thesis(packet, data, span):
+def explain_thesis(packet, data, span):
     rest = Cursor(data, 2, len(data))
     rows = [f"| key | `{data[2:3].hex()}` | {rest.take(1, ('', ''))[0]} |"]
     baseline = ["baseline_delta"] if not data[2] and span > 1 else []
@@ -230,22 +230,22 @@ def tell_thesis(packet, data, span):
     table("element | bytes | value", rows)
 
 
-def tell_packet(packet, data, decoder, scene, every_bit):
+def explain_packet(packet, data, decoder, scene, every_bit):
     thesis = not isinstance(packet, (rigid.Packet, load.LoadPacket)) and not isinstance(packet.state, deformable_main.MainState)
     if thesis:
-        tell_thesis(packet, data, scene.baseline_span)
+        explain_thesis(packet, data, scene.baseline_span)
     if every_bit:
         table("symbol | range | code | zero | bound or step | value | bytes taken", Narrator.steps)
     table("element | decoded by | bits | value", Narrator.symbols)
     print(f"Final state: range {packet.range:08x}, code {packet.code:08x}. Tick {packet.tick}, key {packet.key}.\n")
     if isinstance(packet, rigid.Packet):
-        tell_rigid(packet, scene)
+        explain_rigid(packet, scene)
     elif isinstance(packet, load.LoadPacket):
-        tell_load(packet, scene)
+        explain_load(packet, scene)
     elif thesis:
         table("vertex | u", [f"| {v} | {vector(packet.state.u[3 * v:3 * v + 3])} |" for v in packet.vertices])
     else:
-        tell_main(packet, decoder.codec)
+        explain_main(packet, decoder.codec)
 
 
 def explain(file, number, every_bit):
@@ -263,7 +263,7 @@ def explain(file, number, every_bit):
         sys.exit(f"there is no packet {number}")
     where = f" of substream {substream}" if len(decoders.substreams) > 1 else ""
     print(f"Packet{where}: `{data.hex(' ')}`: sequence {packet.sequence}, payload `{data[2:].hex(' ')}`.\n")
-    tell_packet(packet, data, decoders.substreams[substream], file.declaration, every_bit)
+    explain_packet(packet, data, decoders.substreams[substream], file.declaration, every_bit)
     print(f"State hash: {decoders.substreams[substream].state_hash():016x}.")
 
 
@@ -324,7 +324,7 @@ class Fields:
         self.differences(name, 3, value)
 
 
-def tell_declaration(file, data):
+def explain_declaration(file, data):
     f, end = Fields(data), file.first_record
     f.take("magic", 4)
     for name, form in (("version", "B"), ("profile", "B"), ("flags", "H"), ("body_size", "I"), ("tick_rate", "I"),
@@ -340,7 +340,7 @@ def tell_declaration(file, data):
     if file.declaration.deformables:
         f.varint("deformable_count")
         for item in file.declaration.deformables:
-            tell_deformable(f, item)
+            explain_deformable(f, item)
     if file.declaration.loads:
         f.number("force_exp", "B")
         f.number("load_users", "B")
@@ -353,7 +353,7 @@ def tell_declaration(file, data):
     if any(item.body for item in file.declaration.deformables):
         for item in file.declaration.deformables:
             if f.number("method", "B"):
-                tell_elastic(f, item)
+                explain_elastic(f, item)
     if file.declaration.interest:
         f.number("full", "I")
         f.number("reach", "I")
@@ -368,7 +368,7 @@ def tell_declaration(file, data):
         table("vertex | depth | parents | weights", rows)
 
 
-def tell_deformable(f, item):
+def explain_deformable(f, item):
     f.number("profile", "B")
     f.take("name", f.number("name_size", "B"), True)
     f.number("rings", "B")
@@ -402,7 +402,7 @@ def tell_deformable(f, item):
         f.take(f"entries of mode {k}", sum(1 if -64 <= e < 64 else 2 for e in item.modes[k].entries))
 
 
-def tell_elastic(f, item):
+def explain_elastic(f, item):
     for name, form in (("mass_damping", "d"), ("stiffness_damping", "d"), ("gravity", "3d"), ("coupling", "d"), ("friction", "d")):
         f.number(name, form)
     for i in range(f.number("material_count", "B")):
@@ -437,13 +437,13 @@ if __name__ == "__main__":
     parser.add_argument("number", metavar="NUMBER", type=int, nargs="?", default=0, help="of the packet, from 0 [0]")
     parser.add_argument("--symbols", action="store_true", help="leave out the table of single bits")
     parser.add_argument("--declaration", action="store_true", help="the scene declaration instead of a packet")
-    parser.add_argument("--lose", metavar="N", type=int, nargs="+", help="play all packets but these, and tell what is refused")
+    parser.add_argument("--lose", metavar="N", type=int, nargs="+", help="play all packets but these, and list what is refused")
     arguments = parser.parse_args()
     try:
         content = content_of(arguments.stream)
         stream = File(content)
         if arguments.declaration:
-            tell_declaration(stream, content)
+            explain_declaration(stream, content)
         elif arguments.lose:
             play(stream, set(arguments.lose))
         else:

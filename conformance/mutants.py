@@ -61,7 +61,7 @@ class Module:
         self.functions = {first_line(f): f.end_lineno or 0 for f in functions_of(self.tree)}
 
     def numbered(self, mutations: Iterator[Mutation]) -> list[Mutant]:
-        """Equal changes in one function are told apart by a number."""
+        """Equal changes in one function are distinguished by a number."""
         seen: dict[str, int] = {}
         mutants = []
         for m in mutations:

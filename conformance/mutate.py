@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measure the vectors: run them against mutants of the second decoder and tell which mutants no vector catches (README.md).
+"""Measure the vectors: run them against mutants of the second decoder and list which mutants no vector catches (README.md).
 
 A mutant differs from decoder.py and its modules in one place. It is caught by a vector whose answer changes, or at which it crashes
 or hangs. Exit status: 0 done, 1 the score asked for is missed or the list of equivalent mutants is wrong, 2 wrong use.
@@ -83,7 +83,7 @@ def answer(vector: Vector) -> list[str]:
 
 
 def try_mutant(module: Module, mutant: Mutant, vectors: list[Vector], pipe: TextIO) -> None:
-    """Runs the vectors until one fails, and writes its number and how; a line before each tells a hang."""
+    """Runs the vectors until one fails, and writes its number and how; a line before each shows a hang."""
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     sys.meta_path.insert(0, Loader(module.name, module.code_of(mutant)))
     for number, vector in enumerate(vectors):
@@ -150,7 +150,7 @@ class Trial:
         self.child = Child(try_mutant, module, mutant, vectors)
 
     def outcome(self) -> Outcome:
-        """The last line tells; a child that was stopped leaves that of a hang."""
+        """The last line shows it; a child that was stopped leaves that of a hang."""
         said = self.child.lines()
         number, how = said[-1].split() if said else ("0", "crash")
         return Outcome("", "") if how == "none" else Outcome(self.vectors[int(number)].case.id, how)

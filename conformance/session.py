@@ -20,7 +20,7 @@ from scene import THESIS, Declaration, read_declaration
 PREVIOUS = 0                                                # policies of baselines
 MOST_HELD, BYTES_HELD, LONGEST_HELD = 1024, 1 << 16, 2_000_000
 ASKS_BACK = {UP: (BUTTONS, STATE), DOWN: (PIECE, PACE, SEAT)}   # an acknowledgement rides on these, due or not
-MOST_UNTOLD = 32                                            # numbers that are accepted until an acknowledgement is due at once
+MOST_UNREPORTED = 32                                        # numbers that are accepted until an acknowledgement is due at once
 PIECE_SIZE, WINDOW, WINDOW_PER_PIECE, LARGEST_WINDOW = 1024, 64, 16, 1024
 FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 4
 REMEMBERED = 1024                                           # own numbers
@@ -86,7 +86,7 @@ class Epoch:
         self.heard_at = 0                                   # when the newest came
         self.accepted: dict[int, int] = {}                  # when each came
         self.ack_due: Optional[int] = None
-        self.untold = 0                                     # accepted since the last acknowledgement
+        self.unreported = 0                                 # accepted since the last acknowledgement
         self.next, self.acknowledged = 1, 0                 # own numbers
         self.sent_at: dict[int, int] = {}
         self.arrived: set[int] = set()                      # own numbers that were acknowledged
@@ -275,8 +275,8 @@ class Epoch:
 
     def accept(self, now: int, number: int, parts: list[tuple], urgent: bool) -> None:
         self.accepted[number] = now
-        self.untold += 1
-        full = self.untold >= MOST_UNTOLD
+        self.unreported += 1
+        full = self.unreported >= MOST_UNREPORTED
         if not full and all(kind in (ACK, CLOCK) or kind > PACKET_PART for kind, _ in parts):
             return
         urgent = full or urgent or any(kind == STATE and not self.was_driving for kind, _ in parts)
@@ -294,7 +294,7 @@ class Epoch:
         held = min((now - self.accepted[newest]) // 16, NO_TIMING)
         missing = sum(1 << i for i in range(64) if newest - 1 - i > 0 and newest - 1 - i not in self.accepted)
         self.accepted = {n: at for n, at in self.accepted.items() if n > newest - 1024}
-        self.ack_due, self.untold = None, 0
+        self.ack_due, self.unreported = None, 0
         return part(ACK, struct.pack("<HH", newest % (1 << 16), held) + varint(missing))
 
     def unanswered(self) -> Optional[int]:
@@ -451,7 +451,7 @@ class Client:
             self.leave(SILENCE)
 
     def leave(self, reason: int = BYE) -> None:
-        """poll() tells the server."""
+        """poll() sends it to the server."""
         if self.state in ("receiving", "live"):
             self.leaving = sealed(head(HANDSHAKE, LEAVE) + bytes([reason]), self.epoch.epoch)
         if self.state != "closed":
@@ -487,7 +487,7 @@ def lines(script: str) -> Iterator[dict]:
         yield from session_server.lines(script)
         return
     client: Optional[Client] = None
-    told = None
+    reported = None
     for number, line in enumerate(script.splitlines()):
         step, error, out = json.loads(line), None, []
         if client:
@@ -503,9 +503,9 @@ def lines(script: str) -> Iterator[dict]:
             error = e
         said = said_by(list(client.poll(step["at"] + PATIENCE)))
         newest, held, missing = said.get("acknowledges", (None, 0, None))
-        if told == (newest, missing):
+        if reported == (newest, missing):
             del said["acknowledges"]                        # nothing new
-        told = (newest, missing) if newest is not None else told
+        reported = (newest, missing) if newest is not None else reported
         answer = {"line": number, "state": client.state}
         if client.state == "closed":
             answer["reason"] = client.reason

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Damaged scripts of sessions, for differential.py: lines of the vectors removed, doubled, swapped and mixed, their bytes changed, and
-datagrams that no vector has. Check values are mended after most of it. The same seed and number give the same script.
+datagrams that no vector has. Check values are repaired after most of it. The same seed and number give the same script.
 """
 from __future__ import annotations
 

@@ -105,8 +105,8 @@ class Script {
     out_ << "}\n";
   }
   bool is_new(const Acknowledgement& said) {
-    const auto told = std::exchange(told_, {said.newest, said.missing});
-    return told != told_;
+    const auto before = std::exchange(reported_, {said.newest, said.missing});
+    return before != reported_;
   }
   void write_states() {
     const Receiver& receiver = *client_->receiver();
@@ -124,7 +124,7 @@ class Script {
   std::ostream& out_;
   std::optional<SessionClient> client_;
   std::optional<LeaveReason> reason_;
-  std::pair<std::uint16_t, std::uint64_t> told_;  // newest, missing
+  std::pair<std::uint16_t, std::uint64_t> reported_;  // newest, missing
   unsigned lines_ = 0;
 };
 

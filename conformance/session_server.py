@@ -38,8 +38,8 @@ class ServedEpoch(Epoch):
         self.open: set[int] = set()                         # own numbers whose fate is not known
         self.timeouts = 0                                   # of pieces, since the last that arrived
         self.device_packets = 0
-        self.told, self.asked_first = 0, None               # newest of the last acknowledgement; when something asked first since
-        self.told_changed = False                           # one below it was accepted since
+        self.reported, self.asked_first = 0, None           # newest of the last acknowledgement; when something asked first since
+        self.reported_changed = False                       # one below it was accepted since
         self.fates: list[bool] = []                         # whether numbers were lost, as far as it is known
 
     def take(self, now: int, datagram: bytes) -> None:
@@ -47,18 +47,18 @@ class ServedEpoch(Epoch):
         super().take(now, datagram)
 
     def accept(self, now: int, number: int, parts: list[tuple], urgent: bool) -> None:
-        self.told_changed |= number < self.told
+        self.reported_changed |= number < self.reported
         super().accept(now, number, parts, urgent)
 
     def wait_from(self, now: int) -> int:
         """Section 4: long where the path of a device is known, while all is well."""
         self.asked_first = now if self.asked_first is None else self.asked_first
-        well = not self.told_changed and all(n in self.accepted for n in range(self.told + 1, max(self.accepted) + 1))
+        well = not self.reported_changed and all(n in self.accepted for n in range(self.reported + 1, max(self.accepted) + 1))
         loss = sum(self.fates[-256:]) / max(128, len(self.fates[-256:]))
         return self.asked_first + DRIVEN_PATIENCE if self.path and well and loss <= 0.01 else now + self.patience
 
     def acknowledgement(self, now: int) -> bytes:
-        self.told, self.asked_first, self.told_changed = max(self.accepted), None, False
+        self.reported, self.asked_first, self.reported_changed = max(self.accepted), None, False
         return super().acknowledgement(now)
 
     def find_lost(self, now: int, newest: int, there: set[int]) -> None:
@@ -122,7 +122,7 @@ class ServedEpoch(Epoch):
         return True
 
     def begin_pace(self, tick: int, offset: int) -> bytes:
-        """The part that tells it."""
+        """The part that signals it."""
         self.path.begin(tick, offset)
         return part(PACE, varint(tick) + varint(2 * offset if offset >= 0 else -2 * offset - 1))
 
@@ -274,7 +274,7 @@ class Server:
             self.refuse(peer, nonce, FULL)
         else:
             place = free[0]
-            if self.gone.pop(place, None):                  # it need not be told any more
+            if self.gone.pop(place, None):                  # it need not be sent any more
                 self.says = [item for item in self.says if item[0] != peer]
             c = self.connections[place] = Connection(peer, place, role, nonce, (state_limit, header_limit))
             c.begin(self, next(self.epochs), now)
@@ -333,7 +333,7 @@ class Listener:
 
     def __init__(self) -> None:
         self.newest: dict[int, int] = {}                    # number of a datagram
-        self.told: dict[int, tuple] = {}
+        self.reported: dict[int, tuple] = {}
 
     def acknowledgement(self, peer: int, number: int, epoch: int, parts: bytes) -> bytes:
         ack = part(ACK, struct.pack("<HHB", self.newest.get(peer, 0), 65535, 0))
@@ -345,10 +345,10 @@ class Listener:
             value = struct.unpack("<H", datagram[:2])[0] >> 2
             if datagram[0] & 3 == HANDSHAKE:
                 handshakes.add((peer, datagram.hex()))
-                if value == WELCOME and datagram not in self.told.get(("welcome", peer), ()):
+                if value == WELCOME and datagram not in self.reported.get(("welcome", peer), ()):
                     self.newest[peer] = 0
-                    self.told.pop(peer, None)
-                    self.told["welcome", peer] = (datagram,)
+                    self.reported.pop(peer, None)
+                    self.reported["welcome", peer] = (datagram,)
                 continue
             self.newest[peer] = value
             cursor = Cursor(datagram, 2, len(datagram) - 4)
@@ -359,9 +359,9 @@ class Listener:
                     acks[peer] = [peer, e.number(2, CUT), e.number(2, CUT), f"{e.varint(CUT, SPARE):016x}"]
         out: dict = {}
         for peer, ack in sorted(acks.items()):
-            if self.told.get(peer) != (ack[1], ack[3]):
+            if self.reported.get(peer) != (ack[1], ack[3]):
                 out.setdefault("acknowledges", []).append(ack)
-            self.told[peer] = ack[1], ack[3]
+            self.reported[peer] = ack[1], ack[3]
         if handshakes:
             out["says"] = [list(item) for item in sorted(handshakes)]
         return out

@@ -26,7 +26,7 @@ constexpr std::uint64_t kPatience = 25'000;  // [us] after which an acknowledgem
 struct Peer {
   std::uint64_t epoch = 0;
   std::uint16_t newest = 0;                                       // number of its datagrams
-  std::optional<std::pair<std::uint16_t, std::uint64_t>> told{};  // newest, missing
+  std::optional<std::pair<std::uint16_t, std::uint64_t>> reported{};  // newest, missing
 };
 
 /// What it has said after a line, apart from when.
@@ -107,7 +107,7 @@ class ServerScript {
       peer.newest = numbered->number;
       PartReader parts = numbered->parts(Direction::down);
       while (const auto part = parts.next().value())
-        if (const auto* told = std::get_if<Acknowledgement>(&*part)) said.acknowledgements[to] = *told;
+        if (const auto* ack = std::get_if<Acknowledgement>(&*part)) said.acknowledgements[to] = *ack;
       return;
     }
     said.handshakes.emplace(to, hex(datagram));
@@ -163,11 +163,11 @@ class ServerScript {
   }
   void write_acknowledgements(const Said& said) {
     std::optional<List> list;
-    for (const auto& [to, told] : said.acknowledgements) {
-      const auto before = std::exchange(peers_[to].told, std::pair(told.newest, told.missing));
-      if (before == peers_[to].told) continue;
+    for (const auto& [to, ack] : said.acknowledgements) {
+      const auto before = std::exchange(peers_[to].reported, std::pair(ack.newest, ack.missing));
+      if (before == peers_[to].reported) continue;
       if (!list) list.emplace(out_, "acknowledges");
-      list->item() << '[' << to << ',' << told.newest << ',' << told.held << ",\"" << hex(told.missing, 16) << "\"]";
+      list->item() << '[' << to << ',' << ack.newest << ',' << ack.held << ",\"" << hex(ack.missing, 16) << "\"]";
     }
   }
   void write_devices(std::uint64_t now) {

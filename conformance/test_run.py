@@ -117,7 +117,7 @@ sys.stdout.write(reply.stdout[:place].decode() + chr(reply.stdout[place] ^ 1) + 
 sys.exit(reply.returncode)""")
         self.expect(1, "0 passed, 3 failed, 0 skipped", "--testee", testee)
 
-    def test_program_that_only_tells_its_usage(self) -> None:
+    def test_program_that_only_prints_its_usage(self) -> None:
         out = self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", self.command("raise SystemExit(1)"), "--only", "*/001-*")
         self.assertIn("rejected with exit status 1 and no line of JSON; must be accepted", out)
 
@@ -327,13 +327,13 @@ class DifferentialTest(unittest.TestCase):
             self.assertEqual(differential.main(["--testee", "true", "--only", "rigid"], HERE), 2)
         self.assertEqual(err.getvalue(), "differential.py: rigid: matches no valid case\n")
 
-    def test_mended_damage_passes_the_check_values(self) -> None:
+    def test_repaired_damage_passes_the_check_values(self) -> None:
         damaged = bytearray(VALID)
         damaged[13] ^= 1
         self.assertEqual(len(differential.sections(VALID)), 1)
-        self.assertEqual(differential.mended(VALID), VALID)
+        self.assertEqual(differential.repaired(VALID), VALID)
         self.assertEqual(differential.expected(bytes(damaged), None)[0], 1)
-        self.assertEqual(differential.expected(differential.mended(bytes(damaged)), None)[0], 0)
+        self.assertEqual(differential.expected(differential.repaired(bytes(damaged)), None)[0], 0)
 
 
 class DevicePathTest(unittest.TestCase):

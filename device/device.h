@@ -49,7 +49,7 @@ struct Reading {
     ended,         ///< a recording is over: the sample is its last one
   };
   DeviceSample sample{};
-  Time taken = 0;  ///< when the device took it, as well as can be told
+  Time taken = 0;  ///< when the device took it, as well as can be known
   State state = State::valid;
   std::uint32_t lost = 0;  ///< samples since the last call that nobody can have any more; only of a device that paces
 };

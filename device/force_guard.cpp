@@ -12,7 +12,7 @@ namespace {
 constexpr Time kFade = 10 * kMillisecond;
 constexpr Time kDefaultSlewTime = 5 * kMillisecond;
 constexpr Time kMostElapsed = 2 * kMillisecond;  // after a pause the slew limit must not allow a jump
-constexpr double kLeastMove = 1e-7;              // [m] less tells no velocity
+constexpr double kLeastMove = 1e-7;              // [m] less gives no velocity
 constexpr double kMostDamping = 5;               // [N s/m] at 1 kHz stable on every device that a hand holds
 
 double seconds(Time time) noexcept { return 1e-9 * static_cast<double>(time); }

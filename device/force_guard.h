@@ -61,7 +61,7 @@ class ForceGuard {
   std::uint64_t count(GuardAction action) const noexcept { return counts_[static_cast<std::size_t>(action)]; }  ///< calls
   /// The first kLogged actions that began; later ones are counted only.
   std::span<const GuardEntry> log() const noexcept { return std::span(log_).first(logged_); }
-  /// [J] that the device gave away and did not take back: above zero the hand felt something active.
+  /// [J] that the device gave away and did not take back: above zero something active was rendered to the hand.
   double energy() const noexcept { return energy_; }
   const GuardLimits& limits() const noexcept { return limits_; }
 

@@ -54,7 +54,7 @@ bool hears(int line) noexcept {
   return size > 0;
 }
 
-bool tell(int line) noexcept {
+bool notify(int line) noexcept {
   const char word = 1;
   ssize_t size = 0;
   do size = send(line, &word, 1, MSG_NOSIGNAL);
@@ -64,7 +64,7 @@ bool tell(int line) noexcept {
 
 [[noreturn]] void guard(int line, const std::function<void()>& last_act) noexcept {
   leave(line);
-  if (tell(kLine) && !hears(kLine)) {
+  if (notify(kLine) && !hears(kLine)) {
     try {
       last_act();
     } catch (const std::exception&) {
@@ -95,7 +95,7 @@ Result<std::unique_ptr<Guardian>> Guardian::start(const std::function<void()>& l
 }
 
 Guardian::~Guardian() {
-  static_cast<void>(tell(line_));  // it may have been ended
+  static_cast<void>(notify(line_));  // it may have been ended
   close(line_);
   while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Server and client over a link that loses one packet in ten and takes 20 ms each way. Packets build on states that the client has
 /// acknowledged, so no loss stops the stream, and what is not acknowledged is sent again. The client shows the tick of 50 ms ago: most
-/// packets are there by then, and it bends over the gaps that losses leave. If the client cannot decode a packet, advice() tells whether
+/// packets are there by then, and it bends over the gaps that losses leave. If the client cannot decode a packet, advice() says whether
 /// to request a key packet.
 #include <cmath>
 #include <cstdio>

@@ -73,7 +73,7 @@ def check_file(file: Path) -> None:
 
 
 def check_program() -> None:
-    """Units are SI, and a refusal tells the rule."""
+    """Units are SI, and a refusal names the rule."""
     inputs = {case.id: read_input(case) for case in load_cases(CONFORMANCE)[0]}
 
     def run(name: str) -> subprocess.CompletedProcess:

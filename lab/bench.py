@@ -13,7 +13,7 @@ STUDIES = {
     "precision": "Error against run time: methods, solvers and step sizes",
     "delay": "What delay does to force and picture, and what clients can do about it",
     "stability": "Stability limits of each part beside theory",
-    "session": "How sessions bear networks that lose, delay and reorder",
+    "session": "How sessions tolerate networks that lose, delay and reorder",
     "scale": "What a server of many clients and objects costs",
     "join": "How long a client takes to join over a line",
     "world": "A large world on several servers, on paper: load, hand-overs, traffic",

@@ -29,7 +29,7 @@ compare or tolerable wrote. Of a long recording a line shows the extremes.
 examples:
   tactus plot push.mcap -o push.svg
   tactus plot plain.mcap helped.mcap --label "no compensation" --label "with compensation" -o both.pdf
-  tactus plot plain.mcap helped.mcap --panel "force on" --line felt -o forces.svg
+  tactus plot plain.mcap helped.mcap --panel "force on" --line rendered -o forces.svg
   tactus encode push.mcap -o a.tct -p 4% --plot a.json && tactus encode push.mcap -o b.tct -p 8% --plot b.json
   tactus plot a.json b.json -o errors.png"""
 

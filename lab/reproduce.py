@@ -61,7 +61,7 @@ USUAL = {"seeds": 5, "grip": "normal", "pace": 0.5, "tremor": 0.4e-3, "length_un
 HEADING = """# The thesis, figure by figure
 
 Made by `{} -o DIR`, each section by the command in it: what comes out here beside the numbers of the thesis, where it gives any. \
-Everything is deterministic. Differences are told where they are: [rates](../README.md), [delay](../delay/README.md).
+Everything is deterministic. Differences are stated where they are: [rates](../README.md), [delay](../delay/README.md).
 
 Reproduced elsewhere: figure 2.2 and eqs. 4.37 and 4.38 ([stability](../stability/report.md)), figures 3.18 and 3.20 \
 ([deformable objects](../deformable/README.md)). What needs people is not reproduced: the ratings of chapter 3 and of figures 4.8 and \

@@ -26,7 +26,7 @@ void DelayTolerance::Touch::add(std::optional<double> most, double follows) {
   follows_ += follows;
   if (!most) return;
   ++pressing_;
-  for (std::size_t i = 0; i < kRoundTrips.size(); ++i) felt_[i] += kRoundTrips[i] > *most ? 1U : 0U;
+  for (std::size_t i = 0; i < kRoundTrips.size(); ++i) perceptible_[i] += kRoundTrips[i] > *most ? 1U : 0U;
   if (*most < kLongest) ++bins_[static_cast<std::uint32_t>(*most / kBin)];
 }
 
@@ -39,8 +39,8 @@ std::optional<double> DelayTolerance::Touch::quantile(double fraction) const noe
   return std::nullopt;
 }
 
-double DelayTolerance::Touch::felt(std::size_t i) const noexcept {
-  return ticks_ == 0 ? 0 : static_cast<double>(felt_[i]) / static_cast<double>(ticks_);
+double DelayTolerance::Touch::perceptible(std::size_t i) const noexcept {
+  return ticks_ == 0 ? 0 : static_cast<double>(perceptible_[i]) / static_cast<double>(ticks_);
 }
 
 std::optional<Vec3> DelayTolerance::Path::velocity(double tick) const noexcept {

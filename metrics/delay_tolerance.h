@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How much delay a recorded touch bears until the user feels it, by thesis 4.2.2: a client that learns of the object's motion a round
-/// trip R late renders |df| = k R v_p more force (eq. 4.17) than the server, whose force f_s is what should be felt (eq. 4.15). That
+/// How much delay a recorded touch tolerates until the user feels it, by thesis 4.2.2: a client that learns of the object's motion a round
+/// trip R late renders |df| = k R v_p more force (eq. 4.17) than the server, whose force f_s is what should be rendered (eq. 4.15). That
 /// stays under the Weber fraction c up to
 ///
 ///   R_max = c |f_s| / (k v_p)                                                                                      eqs. 4.20, 4.31
 ///
 /// v_p is the speed of the device against f_s: motion along a surface stretches nothing. Equation 4.31 takes force and speed along the
 /// motion, which is the same where they are parallel. Who does not go against the force feels no delay.
-/// A deformable object follows a fraction K < 1 of the way only (eq. 4.54) and bears 1 / K times as much.
+/// A deformable object follows a fraction K < 1 of the way only (eq. 4.54) and tolerates 1 / K times as much.
 #pragma once
 
 #include <array>
@@ -52,8 +52,8 @@ class DelayTolerance {
     std::uint64_t pressing() const noexcept { return pressing_; }  ///< ticks in which delay adds force
     /// [s] R_max that a fraction of the pressing ticks does not reach, within kBin; none: longer than kLongest, or nobody pressed
     std::optional<double> quantile(double fraction) const noexcept;
-    /// Fraction of all ticks in which a round trip of kRoundTrips[i] is felt.
-    double felt(std::size_t i) const noexcept;
+    /// Fraction of all ticks in which a round trip of kRoundTrips[i] is perceptible.
+    double perceptible(std::size_t i) const noexcept;
 
     double follows() const noexcept { return ticks_ == 0 ? 1 : follows_ / static_cast<double>(ticks_); }  ///< mean of K
 
@@ -62,7 +62,7 @@ class DelayTolerance {
    private:
     std::uint64_t ticks_ = 0, pressing_ = 0;
     double follows_ = 0;  // sum
-    std::array<std::uint64_t, kRoundTrips.size()> felt_{};
+    std::array<std::uint64_t, kRoundTrips.size()> perceptible_{};
     std::map<std::uint32_t, std::uint64_t> bins_;  // by their number; only those with ticks
   };
   const std::map<Pair, Touch>& touches() const noexcept { return touches_; }

@@ -52,7 +52,7 @@ class ErrorMetrics {
   const ErrorSeries& rotation() const noexcept { return rotation_; }    ///< [rad] against visual_rotation
   const ErrorSeries& force() const noexcept { return force_; }          ///< [N] against the haptic rule
   const ErrorSeries& perceived() const noexcept { return perceived_; }  ///< the same errors against weber_fraction_at
-  const ErrorSeries& rendered() const noexcept { return rendered_; }    ///< [N] as felt, against weber_fraction_at
+  const ErrorSeries& rendered() const noexcept { return rendered_; }    ///< [N] at the hand, against weber_fraction_at
   double worst_haptic_ratio() const noexcept { return worst_ratio_; }   ///< largest haptic_ratio; <= 1: the rule held
   /// Names of users whose forces no contact explains in any tick: no bound of force holds for them.
   std::vector<std::string> unbound_users() const;

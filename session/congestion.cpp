@@ -67,7 +67,7 @@ void LinePace::sent(std::uint64_t number, std::uint64_t now) noexcept {
   first_sent_ = static_cast<std::int64_t>(now);
 }
 
-void LinePace::told(const Told& said, const RoundTrip& trip, std::uint64_t now) noexcept {
+void LinePace::feedback(const Feedback& said, const RoundTrip& trip, std::uint64_t now) noexcept {
   if (first_number_ == 0 || said.number < first_number_) return;
   is_blind_ = false;
   recent_.add(said.arrived - said.sent, now);

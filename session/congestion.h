@@ -69,12 +69,12 @@ class LinePace {
   void arrived() noexcept { ++arrived_; }                       ///< one more of them, as is known from now on
 
   /// What an acknowledgement that measured a round trip says of its `newest`.
-  struct Told {
+  struct Feedback {
     std::uint64_t number = 0, newest_sent = 0;  ///< of this datagram, of the last that was sent
     std::int64_t sent = 0, arrived = 0;  ///< [us] both by the own clock: when it went, and came there, later by the way back
   };
-  void told(const Told& said, const RoundTrip& trip, std::uint64_t now) noexcept;
-  void timed_out() noexcept { is_blind_ = true; }  ///< nothing was told for too long
+  void feedback(const Feedback& said, const RoundTrip& trip, std::uint64_t now) noexcept;
+  void timed_out() noexcept { is_blind_ = true; }  ///< no feedback for too long
 
  private:
   static constexpr std::uint64_t kFirstMore = 8;
@@ -102,7 +102,7 @@ class LinePace {
 };
 
 // ==== line rate ====
-// How fast datagrams may go to a client over a way that nobody has told the rate of: no limit until a queue shows what it carries.
+// How fast datagrams may go to a client over a way whose rate nobody has stated: no limit until a queue shows what it carries.
 // spec/70-session.md section 9.
 
 class LineRate {

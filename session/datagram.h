@@ -40,7 +40,7 @@ struct Welcome {
   std::uint64_t size = 0;   ///< [bytes] of the declaration
   std::uint64_t hash = 0;   ///< FNV-1a of its bytes
   std::uint64_t start = 0;  ///< [us] the server's clock at tick 0
-  std::uint64_t world = 0;  ///< what is simulated; 0: not told
+  std::uint64_t world = 0;  ///< what is simulated; 0: not declared
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 

@@ -150,7 +150,7 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
 
 void Exchange::pace_pieces(const Acknowledgement& said, std::uint64_t now) noexcept {
   const std::int64_t arrived = static_cast<std::int64_t>(now) - std::int64_t{16} * said.held;
-  pieces->pace.told({.number = sent_.highest_acknowledged(),
+  pieces->pace.feedback({.number = sent_.highest_acknowledged(),
                      .newest_sent = sent_.newest(),
                      .sent = arrived - *sent_.sample(),
                      .arrived = arrived},
@@ -305,7 +305,7 @@ void Exchange::skip_number(std::uint64_t now) noexcept {
   sent_.send(now);
 }
 
-/// The layers of a mesh build on each other: once one is lost, the other end refuses the rest, and acknowledges nothing that would tell.
+/// The layers of a mesh build on each other: once one is lost, the other end refuses the rest, and acknowledges nothing that would show it.
 bool Exchange::misses_layers(std::uint64_t now) const noexcept {
   return layered_ > sent_.highest_acknowledged() && now > std::max(progress_at_, key_wanted_at_) + 2 * patience();
 }
@@ -423,7 +423,7 @@ const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
   return resends_->next(now, latest());
 }
 
-/// [us] when the newest datagram that asks counts as lost: none after it would tell.
+/// [us] when the newest datagram that asks counts as lost: none after it would show it.
 std::optional<std::uint64_t> Exchange::tail_due() const noexcept {
   if (!copies_rigid() || !sent_.round_trip() || asked_ <= sent_.highest_acknowledged()) return std::nullopt;
   return std::max(asked_at_, tail_at_) + patience();

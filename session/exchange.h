@@ -21,8 +21,8 @@
 
 namespace tactus {
 
-inline constexpr std::uint64_t kHashEvery = 64;  ///< packets with a number that this divides: clients tell the hash of the state
-/// [us] of acknowledgements in these directions; of a device whose path both ends know, while they tell of nothing that is missing
+inline constexpr std::uint64_t kHashEvery = 64;  ///< packets with a number that this divides: clients report the hash of the state
+/// [us] of acknowledgements in these directions; of a device whose path both ends know, while they report nothing that is missing
 inline constexpr std::uint64_t kUpPatience = 10'000, kDownPatience = 25'000, kDrivenPatience = 140'000;
 
 /// pre  `now` [us] never decreases.   Only receive_with() allocates.
@@ -50,14 +50,14 @@ class Exchange {
     std::uint64_t number = 0;            ///< of the datagram
     std::optional<std::int64_t> tick;    ///< newest of the packets that were decoded
     std::optional<std::int64_t> oldest;  ///< oldest of them
-    bool is_copy = false;                ///< one of rigid objects was a copy: its tick tells nothing about the way
+    bool is_copy = false;                ///< one of rigid objects was a copy: its tick says nothing about the way
     /// Of the packets that were held until now, those with the fastest and the slowest way.
     struct Arrival {
       std::int64_t tick = 0;
       std::uint64_t at = 0;  ///< [us]
     };
     std::optional<std::array<Arrival, 2>> held;
-    std::optional<HashPart> hash;            ///< to be told to the sender
+    std::optional<HashPart> hash;            ///< to be reported to the sender
     std::optional<std::int64_t> round_trip;  ///< [us] that its acknowledgement measured
   };
   /// in   take  Result<void>(const Part&, const Heard&), for the parts that are not acknowledgements, fragments and packets, in order

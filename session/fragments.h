@@ -123,7 +123,7 @@ class PieceSender {
   /// The next piece to send: one that is lost, or a new one. Nothing: as many are on their way as may be.
   std::optional<std::uint64_t> next() const noexcept;
   std::span<const std::uint8_t> bytes(std::uint64_t index) const noexcept;
-  void sent(std::uint64_t index) noexcept;     ///< pre  next() has told it
+  void sent(std::uint64_t index) noexcept;     ///< pre  next() has returned it
   void arrived(std::uint64_t index) noexcept;  ///< perhaps again, or after it was lost
   void lost(std::uint64_t index) noexcept;     ///< its newest datagram is
   std::uint64_t on_their_way() const noexcept { return count_; }

@@ -133,23 +133,23 @@ void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, Asks asks,
   if (accepted_.is_too_old(number)) return;
   if (number > accepted_.newest()) newest_at_ = now;
   accepted_.add(number);
-  if (number > told_) ++above_told_;
-  else changes_told_ = true;
-  const bool full = ++untold_ >= kUntold;
+  if (number > reported_) ++above_reported_;
+  else changes_reported_ = true;
+  const bool full = ++unreported_ >= kUnreported;
   if (asks == Asks::never && !full) return;
   const std::uint64_t usual = asks == Asks::now || full ? now : now + patience.usual;
   if (!asked_at_) asked_at_ = now;
-  const bool is_well = usual > now && !changes_told_ && above_told_ == accepted_.newest() - told_;
+  const bool is_well = usual > now && !changes_reported_ && above_reported_ == accepted_.newest() - reported_;
   due_ = is_well ? *asked_at_ + patience.all_is_well : std::min(due_.value_or(usual), usual);
 }
 
 Acknowledgement ReceivedNumbers::acknowledge(std::uint64_t now) noexcept {
   due_.reset();
   asked_at_.reset();
-  told_ = accepted_.newest();
-  above_told_ = 0;
-  changes_told_ = false;
-  untold_ = 0;
+  reported_ = accepted_.newest();
+  above_reported_ = 0;
+  changes_reported_ = false;
+  unreported_ = 0;
   Acknowledgement out;
   const std::uint64_t newest = accepted_.newest();
   out.newest = static_cast<std::uint16_t>(newest);

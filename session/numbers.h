@@ -173,7 +173,7 @@ class ReceivedNumbers {
   std::uint64_t newest() const noexcept { return received_.newest(); }    ///< highest number received, 0: none
   void receive(std::uint64_t number) noexcept { received_.add(number); }  ///< pre  extend()
 
-  /// [us] that an acknowledgement waits for a datagram to ride on: `all_is_well` if every number that the last one did not tell of has
+  /// [us] that an acknowledgement waits for a datagram to ride on: `all_is_well` if every number that the last one did not report has
   /// come, and none that it said was missing; else `usual`.
   struct Patience {
     std::uint64_t usual = 0, all_is_well = 0;
@@ -190,14 +190,14 @@ class ReceivedNumbers {
   bool can_acknowledge() const noexcept { return accepted_.newest() > 0; }
 
  private:
-  static constexpr unsigned kUntold = 32;  // of the 65 that an acknowledgement tells of: so one of them may be lost
+  static constexpr unsigned kUnreported = 32;  // of the 65 that an acknowledgement reports: so one of them may be lost
 
   NumberWindow received_, accepted_;
-  unsigned untold_ = 0;                          // accepted since the last acknowledgement
+  unsigned unreported_ = 0;                          // accepted since the last acknowledgement
   std::uint64_t newest_at_ = 0;                  // [us] when accepted_.newest() came
   std::optional<std::uint64_t> due_, asked_at_;  // asked_at_: by the first that asks since the last acknowledgement
-  std::uint64_t told_ = 0, above_told_ = 0;      // newest of the last acknowledgement; how many above it were accepted
-  bool changes_told_ = false;                    // one below it was accepted since
+  std::uint64_t reported_ = 0, above_reported_ = 0;      // newest of the last acknowledgement; how many above it were accepted
+  bool changes_reported_ = false;                    // one below it was accepted since
 };
 
 }  // namespace tactus

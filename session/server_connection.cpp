@@ -234,7 +234,7 @@ bool ServerConnection::take(std::uint64_t now, ClientParts& parts) {
   if (!next || parts.epoch != welcome_.epoch || !exchange_->pieces) return false;
   parts_ = Parts::none;
   exchange_->send_with(std::move(*parts.sender), parts.repaired);
-  tells_baselines_ = !parts.repaired;
+  signals_baselines_ = !parts.repaired;
   baselines_number_ = 0;
   congestion_.begin(now);
   line_.begin(now);
@@ -330,17 +330,17 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
   const bool wanted = piece || wants_pace(now) || wants_seat(now);
   const auto datagram = exchange_->poll(now, wanted, [&](DatagramWriter& writer, std::uint64_t number) {
     if (served_.shift && now >= clock_at_ && !writer.empty()) {  // together with an acknowledgement
-      writer.add(ClockPart{told_clock(now)});
+      writer.add(ClockPart{clock_to_send(now)});
       clock_at_ = now + (exchange_->path ? kDrivenClockEvery : kClockEvery);
     }
     const bool pace = pace_ && pace_->waits();
     if (pace) {
-      pace_->tell(writer, number);
+      pace_->send(writer, number);
       pace_at_ = now + exchange_->patience();
     }
     if (piece) add_piece(writer, number, now);
     if (seat_waits_) add_seat(writer, number, now);
-    const bool baselines = tell_baselines(writer, number);
+    const bool baselines = signal_baselines(writer, number);
     return pace || piece || seat_waits_ || baselines;
   });
   if (datagram) line_.sent(exchange_->sent().newest(), datagram->size() + headers_, now);
@@ -349,15 +349,15 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
 }
 
 /// Each datagram says it until one has arrived.   out  true: it was said
-bool ServerConnection::tell_baselines(DatagramWriter& writer, std::uint64_t number) noexcept {
-  if (baselines_number_ > 0 && exchange_->sent().highest_acknowledged() >= baselines_number_) tells_baselines_ = false;
-  if (!tells_baselines_ || state_ != SessionState::live || !writer.add(BaselinesPart{1})) return false;
+bool ServerConnection::signal_baselines(DatagramWriter& writer, std::uint64_t number) noexcept {
+  if (baselines_number_ > 0 && exchange_->sent().highest_acknowledged() >= baselines_number_) signals_baselines_ = false;
+  if (!signals_baselines_ || state_ != SessionState::live || !writer.add(BaselinesPart{1})) return false;
   if (baselines_number_ == 0) baselines_number_ = number;
   return true;
 }
 
-/// Not far beyond the ticks that were made: a world that pauses is not told to go on.   pre  there was a tick
-std::uint64_t ServerConnection::told_clock(std::uint64_t now) const noexcept {
+/// Not far beyond the ticks that were made: a world that pauses is not signalled to go on.   pre  there was a tick
+std::uint64_t ServerConnection::clock_to_send(std::uint64_t now) const noexcept {
   constexpr std::uint64_t kBeyond = 20'000;  // [us]: ticks come unevenly
   const std::uint64_t time = now - static_cast<std::uint64_t>(*served_.shift);
   if (next_tick_ == 0) return time;  // it gets no ticks yet

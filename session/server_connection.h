@@ -26,7 +26,7 @@ struct ServedScene {
   std::uint64_t start = 0;  ///< [us] at tick 0
   std::uint64_t world = 0;
   std::optional<std::int64_t>
-      shift{};  ///< [us] the program's clock less the one that clients are told; none before the first tick
+      shift{};  ///< [us] the program's clock less the one that is signalled to clients; none before the first tick
   SenderOptions sender;
 
   /// Within the limits of a client.
@@ -74,7 +74,7 @@ class ServerConnection {
   bool is_proven() const noexcept { return proven_; }
   /// A new scene.   pre  open
   void begin_epoch(const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
-  /// Go, if the state permits it. Unless the client has left or may not be there at all, it is told.
+  /// Go, if the state permits it. Unless the client has left or may not be there at all, a leave is sent to it.
   bool leave(SessionEvent event, LeaveReason reason) noexcept;
 
   bool is_mine(std::span<const std::uint8_t> datagram) const noexcept;
@@ -117,12 +117,12 @@ class ServerConnection {
   void take(const ReportPart& said, std::uint64_t now) noexcept;
   void look() noexcept;
   std::optional<DeviceSample> driving_device(std::uint64_t now) noexcept;
-  bool tell_baselines(DatagramWriter& writer, std::uint64_t number) noexcept;
+  bool signal_baselines(DatagramWriter& writer, std::uint64_t number) noexcept;
   bool wants_pace(std::uint64_t now) const noexcept { return pace_ && pace_->waits() && now >= pace_at_; }
   bool wants_seat(std::uint64_t now) const noexcept { return seat_waits_ && now >= seat_at_; }
   std::optional<std::uint64_t> piece_due() const noexcept;
   bool wants_welcome(std::uint64_t now) const noexcept;
-  std::uint64_t told_clock(std::uint64_t now) const noexcept;
+  std::uint64_t clock_to_send(std::uint64_t now) const noexcept;
   void add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
   void add_seat(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
 
@@ -145,7 +145,7 @@ class ServerConnection {
   std::optional<Sender> old_;  // to be freed elsewhere
   bool outdated_ = false;      // there is a newer scene
   bool repeats_welcome_ = false;
-  bool tells_baselines_ = false;                  // the client does not know yet that they are the acknowledged ones
+  bool signals_baselines_ = false;                  // the client does not know yet that they are the acknowledged ones
   bool seat_waits_ = false;                       // for an acknowledgement
   std::optional<LeaveReason> left_;               // said by the client
   std::uint64_t silence_, headers_, piece_time_;  // [us], [bytes] around a datagram, [us] of a piece at the rate

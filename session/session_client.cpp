@@ -18,11 +18,11 @@ namespace tactus {
 namespace {
 
 constexpr std::uint64_t kFirstRetry = 100'000, kRejoin = 250'000, kLastRetry = 2'000'000, kJoinFor = 10'000'000;  // [us]
-// [us] from one sign of life to the next: of a participant who feels something, over a network that loses or not; of another
+// [us] from one sign of life to the next: of a participant to whom a force is rendered, over a network that loses or not; of another
 // participant; of an observer while packets come, and at rest.
-constexpr std::uint64_t kFeltAtLoss = 12'000, kFelt = 25'000, kParticipant = 50'000, kServed = 100'000, kIdle = 1'000'000;
+constexpr std::uint64_t kRenderedAtLoss = 12'000, kRendered = 25'000, kParticipant = 50'000, kServed = 100'000, kIdle = 1'000'000;
 constexpr std::uint64_t kMoving = 100'000;  // [us] the same, while the place moves that it looks from
-constexpr std::uint64_t kSeldom = 2;        // times these, of a client that works out what its device does
+constexpr std::uint64_t kSeldom = 2;        // times these, of a client that computes what its device does
 constexpr std::uint32_t kSomeLoss = 65536 / 50;
 constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
 constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
@@ -121,10 +121,10 @@ bool SessionClient::Impl::go(SessionEvent event) noexcept {
 }
 
 void SessionClient::Impl::close(SessionEvent event, LeaveReason reason) noexcept {
-  const bool tells = state == SessionState::receiving || state == SessionState::live;
+  const bool has_joined = state == SessionState::receiving || state == SessionState::live;
   if (!go(event)) return;
   leaving = reason;
-  leaves = tells && event != SessionEvent::left ? kLeaves : 0;
+  leaves = has_joined && event != SessionEvent::left ? kLeaves : 0;
   note({.kind = ClientEvent::Kind::closed, .reason = reason});
 }
 
@@ -220,20 +220,20 @@ Result<void> SessionClient::Impl::take(const Part& part, const Exchange::Heard& 
     const bool was_awake = heard.round_trip && woke_at + static_cast<std::uint64_t>(*heard.round_trip) <= now;
     if (was_awake) offset.add(clock->time, *heard.round_trip, now);
     if (current->playout)
-      current->playout->told(static_cast<std::int64_t>(clock->time) - static_cast<std::int64_t>(current->welcome.start), now);
+      current->playout->clock_signalled(static_cast<std::int64_t>(clock->time) - static_cast<std::int64_t>(current->welcome.start), now);
   } else if (const auto* piece = std::get_if<PiecePart>(&part)) {
     return current->pieces.take(piece->index, piece->bytes);
   } else if (const auto* baselines = std::get_if<BaselinesPart>(&part)) {
     current->exchange.expect(baselines->policy == 0);
   } else if (const auto* pace = std::get_if<PacePart>(&part)) {
     if (current->exchange.path) current->exchange.path->shift(pace->from, pace->offset);
-  } else if (const auto* told = std::get_if<SeatPart>(&part)) {
-    seat = told->seat;
+  } else if (const auto* given = std::get_if<SeatPart>(&part)) {
+    seat = given->seat;
   }
   return {};
 }
 
-/// What a datagram tells about what to show.
+/// What a datagram means for what to show.
 void SessionClient::Impl::play(const Exchange::Heard& heard, std::uint64_t now) noexcept {
   PlayoutClock& playout = *current->playout;
   const Exchange& exchange = current->exchange;
@@ -303,8 +303,8 @@ std::uint64_t SessionClient::Impl::sign_due() const noexcept {
   const std::uint64_t sent = std::max(sign_at, current->exchange.asked_at());
   const bool served = state == SessionState::receiving || sent < packet_at + kRecent;
   const std::uint64_t times = current->exchange.path ? kSeldom : 1;
-  const std::uint64_t felt = current->exchange.sent().loss() > kSomeLoss ? kFeltAtLoss : times * kFelt;
-  const std::uint64_t pause = feels ? felt : options.role == Role::participant ? times * kParticipant : served ? kServed : kIdle;
+  const std::uint64_t rendered = current->exchange.sent().loss() > kSomeLoss ? kRenderedAtLoss : times * kRendered;
+  const std::uint64_t pause = feels ? rendered : options.role == Role::participant ? times * kParticipant : served ? kServed : kIdle;
   const std::uint64_t due = current->exchange.next_send(sent + pause);
   return has_moved() ? std::min(due, current->exchange.next_send(sign_at + kMoving)) : due;
 }

@@ -22,7 +22,7 @@ struct SessionStatus {
   SessionState state = SessionState::closed;
   std::uint16_t client = 0;
   std::uint8_t seat = 0;                        ///< what a participant plays, from 1; 0: nothing; kOnlyLooksOn
-  std::uint64_t world = 0;                      ///< what the server simulates; 0: not told
+  std::uint64_t world = 0;                      ///< what the server simulates; 0: not declared
   std::uint64_t token = 0;                      ///< with which another client goes on with this session; 0: none yet
   std::uint64_t declaration = 0, received = 0;  ///< [bytes] of the scene declaration, in all and so far
   std::uint64_t start = 0;                      ///< [us] the server's clock at tick 0
@@ -61,8 +61,8 @@ class SessionClient {
   /// err  R-API-1, 2, 3: a sample that breaks one counts as the last good one, at rest; others as Sender::encode
   Result<void> submit(std::uint64_t now, const DeviceSample& sample, const std::optional<DeviceContact>& contact) noexcept;
 
-  /// In a scene with interest: where the user looks from [m, world frame], apart from the device of a participant. Objects far from both are told
-  /// less exactly or not at all (Replica::lod()). Say so before open(): an observer is told of all until it has. What is not finite, or beyond 8000 km, does not count.
+  /// In a scene with interest: where the user looks from [m, world frame], apart from the device of a participant. Objects far from both are sent
+  /// less exactly or not at all (Replica::lod()). Say so before open(): an observer is sent all until it has. What is not finite, or beyond 8000 km, does not count.
   void look_from(const Vec3& place) noexcept;
 
   std::optional<std::span<const std::uint8_t>> poll_datagram(std::uint64_t now) noexcept;  ///< valid until the next call
@@ -73,7 +73,7 @@ class SessionClient {
   Receiver* receiver() noexcept;
   /// The tick to show; it never falls within an epoch. -1: none yet.
   std::int64_t shown_tick(std::uint64_t now) noexcept;
-  /// [us] How old the tick that shown_tick() told last is as an answer to the own device: R of thesis chapter 4, playout included.
+  /// [us] How old the tick that shown_tick() returned last is as an answer to the own device: R of thesis chapter 4, playout included.
   /// Nothing: not known yet.
   std::optional<std::uint64_t> round_trip_shown(std::uint64_t now) const noexcept;
   /// Fraction of a force that may be rendered: without news none.   out  0 to 1

@@ -59,7 +59,7 @@ struct Traffic {
   std::uint64_t packets_held = 0;     ///< too large, or the program did not take their datagrams before the next tick
   std::uint64_t lost = 0;             ///< of the datagrams sent, as far as is known
   std::uint64_t ticks_held = 0;    ///< in which nothing was coded, as the rate or the missing acknowledgements did not permit it
-  std::uint64_t wrong_states = 0;  ///< hashes that the other end told and that are not those of the sender
+  std::uint64_t wrong_states = 0;  ///< hashes that the other end reported and that are not those of the sender
 };
 
 // ==== session options ====
@@ -118,7 +118,7 @@ struct SessionServerOptions {
   /// 1: they never do, and the states that do not fit are left out.
   double widening = 8;
   std::uint64_t silence = 120'000'000;  ///< [us] after which a client counts as gone
-  std::uint64_t world = 0;              ///< what is simulated, as the clients' programs find it, too; 0: not told
+  std::uint64_t world = 0;              ///< what is simulated, as the clients' programs find it, too; 0: not declared
   /// The transport hands on datagrams only of peers that have answered from their address, as the seal does: the declaration goes with
   /// the welcome, a round trip sooner.
   bool addresses_are_proven = false;

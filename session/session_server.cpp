@@ -46,7 +46,7 @@ constexpr std::size_t kMostHashed =
     16'384;  // objects of a scene whose states are compared with those of clients: a hash takes 50 ns each
 constexpr std::size_t kHashedObjects = 4096;  // in a tick: 0.2 ms
 
-/// SplitMix64: epochs that differ and that strangers cannot tell, if they cannot tell the seed.
+/// SplitMix64: epochs that differ and that strangers cannot guess, if they cannot guess the seed.
 static std::uint64_t draw(std::uint64_t& state) noexcept {
   state += 0x9E3779B97F4A7C15u;
   std::uint64_t z = state;
@@ -207,7 +207,7 @@ void SessionServer::handle_timeout(std::uint64_t now) noexcept {
     if (connection->is_silent(now)) impl_->drop(*connection, SessionEvent::silent, LeaveReason::silence);
 }
 
-/// Clients are told a clock by which tick n is at `start` + n ticks, whenever the program began and however long it paused.
+/// Clients are sent a clock by which tick n is at `start` + n ticks, whenever the program began and however long it paused.
 void SessionServer::Impl::keep_time(std::uint64_t now, std::int64_t tick) noexcept {
   constexpr std::int64_t kPause = 100'000;  // [us]: less is unevenness of the ticks
   const std::int64_t rate = served.scene->tick_rate;
@@ -230,9 +230,9 @@ Result<void> SessionServer::submit(std::uint64_t now, std::int64_t tick, const T
     impl_->leaves_out = true;
     return {};
   }
-  Truth told = truth;
-  if (impl_->leaves_out) told.moved.reset();  // what moved since the last tick that was read is not known
-  TACTUS_CHECK(impl_->served.truth->read(tick, told));
+  Truth submitted = truth;
+  if (impl_->leaves_out) submitted.moved.reset();  // what moved since the last tick that was read is not known
+  TACTUS_CHECK(impl_->served.truth->read(tick, submitted));
   impl_->leaves_out = false;
   Result<void> first;
   const std::size_t objects = impl_->served.scene->moving().size();

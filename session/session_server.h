@@ -60,8 +60,8 @@ struct ServerEvent {
 /// each tick begins when the world has made the truth, and the world waits until all servers have submitted it. Each needs its own entropy.
 class SessionServer {
  public:
-  /// in   entropy  64 bits from the system, that nobody else can tell. Epochs are drawn from them so that who has one could
-  ///               work out the next: without the seal, clients of one server trust each other
+  /// in   entropy  64 bits from the system, that nobody else can guess. Epochs are drawn from them so that who has one could
+  ///               compute the next: without the seal, clients of one server trust each other
   /// err  as Sender::create; invalid_argument R-API-4: no client, or more than 65535
   static Result<SessionServer> create(SharedScene scene, const SessionServerOptions& options, std::uint64_t entropy,
                                       std::uint64_t now);
@@ -72,18 +72,18 @@ class SessionServer {
   void handle_timeout(std::uint64_t now) noexcept;
   /// Code a tick for every live client. Ticks are times of the scene: whoever misses some leaves out numbers, or makes them at once; who
   /// pauses for more than 100 ms may go on with the next number.
-  /// time SharedTruth::read once, and 0.5 us per live client; what clients have in common is worked out once (reports/scale). What rests
+  /// time SharedTruth::read once, and 0.5 us per live client; what clients have in common is computed once (reports/scale). What rests
   ///      costs nothing
   /// A bad object does not stop the others: held().
   /// err  as Sender::encode, the first; all clients that can are served
   Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;
   /// As Sender::held(), of the last submit() that found a live client.   out  valid until the next call
   std::span<const HeldPart> held() const noexcept;
-  /// [us] The clock that clients are told: by it tick n is at create() or replace_scene() + n ticks. Before the first tick that of the program.
+  /// [us] The clock that is signalled to clients: by it tick n is at create() or replace_scene() + n ticks. Before the first tick that of the program.
   std::uint64_t clock(std::uint64_t now) const noexcept;
   /// Another scene: clients get a new epoch, and show the old one until they hold the new. Ticks begin anew.   err  as create()
   Result<void> replace_scene(SharedScene scene, std::uint64_t now);
-  /// What a participant plays, from 1; 0: nothing; kOnlyLooksOn: nothing, as it may not. It is told. Who comes
+  /// What a participant plays, from 1; 0: nothing; kOnlyLooksOn: nothing, as it may not. The client is sent it. Who comes
   /// back with the token of its session has the seat that it had.
   void seat(std::uint16_t client, std::uint8_t seat) noexcept;
   /// Take leave of a client, or of all.

@@ -104,12 +104,12 @@ void PlayoutClock::heard(std::uint64_t number, std::optional<std::int64_t> tick,
   if (first || (tick && now >= adapted_at_ + kAdaptEvery && is_settled(now))) adapt(now);
 }
 
-void PlayoutClock::told(std::int64_t time, std::uint64_t now) noexcept {
+void PlayoutClock::clock_signalled(std::int64_t time, std::uint64_t now) noexcept {
   if (shown_ < 0) return;
   const std::int64_t lead = static_cast<std::int64_t>(now) - time;
   if (!waits_) know(time, lead);
-  if (time >= told_) lead_ = lead;  // also of a clock that stands
-  told_ = std::max(told_, time);
+  if (time >= signalled_) lead_ = lead;  // also of a clock that stands
+  signalled_ = std::max(signalled_, time);
   learn(lead, now);
   base_.add(lead, now);
   if (now >= adapted_at_ + kAdaptEvery && is_settled(now)) adapt(now);
@@ -226,7 +226,7 @@ void PlayoutClock::begin_anew(std::uint64_t now) noexcept {
   base_then_.reset();
   count_ = next_ = 0;
   news_ = static_cast<std::int64_t>(now) - lead_;
-  told_ = 0;
+  signalled_ = 0;
   shown_ = std::min(shown_, floor_div((news_ + reach_) * tick_rate_, 1'000'000));
 }
 

@@ -82,9 +82,9 @@ class PlayoutClock {
 
   /// A datagram came.   in   tick  highest of its packets, if it has any   time O(1), but 25 us each 100 ms
   void heard(std::uint64_t number, std::optional<std::int64_t> tick, std::uint64_t now) noexcept;
-  /// With the datagram that was heard the other end told the time of its ticks [us].   time as heard()
-  void told(std::int64_t time, std::uint64_t now) noexcept;
-  /// A copy of what was lost came, and up to this tick nothing is missing: that tells nothing about the way.   time O(1)
+  /// With the datagram that was heard the other end signalled the time of its ticks [us].   time as heard()
+  void clock_signalled(std::int64_t time, std::uint64_t now) noexcept;
+  /// A copy of what was lost came, and up to this tick nothing is missing: that says nothing about the way.   time O(1)
   void repaired(std::int64_t tick) noexcept;
   /// A packet of this tick came at `at` [us] and could not be decoded until now.   time as heard()
   void held(std::int64_t tick, std::uint64_t at, std::uint64_t now) noexcept;
@@ -94,9 +94,9 @@ class PlayoutClock {
   void waits(std::optional<std::uint64_t> since, std::uint64_t now) noexcept;
   /// A packet of an older tick came as well.   time O(1)
   void late(std::int64_t tick, std::uint64_t now) noexcept;
-  /// A round trip was measured [us]: it tells a longer way from a clock that stood still.   time O(1)
+  /// A round trip was measured [us]: it distinguishes a longer way from a clock that stood still.   time O(1)
   void measured(std::int64_t round_trip, std::uint64_t now) noexcept;
-  /// Nobody asked this end for long: what comes now has waited here, and tells nothing about the way.   time O(1)
+  /// Nobody asked this end for long: what comes now has waited here, and says nothing about the way.   time O(1)
   void wake(std::uint64_t now) noexcept;
   /// The tick to show; it never falls unless the other end's ticks begin anew, nor below that of the first packet. -1: nothing was
   /// heard.
@@ -110,7 +110,7 @@ class PlayoutClock {
  private:
   static constexpr std::size_t kRemembered = 2048;      // leads
   static constexpr std::uint64_t kRecent = 60'000'000;  // [us]: clocks drift
-  /// What 100 ms brought, or more until they tell enough: whether the other end's ticks, or our own clock, stood still.
+  /// What 100 ms brought, or more until they are enough: whether the other end's ticks, or our own clock, stood still.
   struct Period {
     std::uint64_t since = 0;  // [us]
     std::size_t leads = 0;
@@ -151,7 +151,7 @@ class PlayoutClock {
   std::int64_t heard_at_ = 0;          // [us]
   std::int64_t news_ = std::numeric_limits<std::int64_t>::min() / 4;  // [us] time of the ticks up to which something was heard
   std::int64_t lead_ = 0;                                             // [us] of it
-  std::int64_t told_ = 0;                                             // [us] newest time that a clock told
+  std::int64_t signalled_ = 0;                                        // [us] newest time that a clock part signalled
   std::optional<RoundTrip> repair_;
   bool waits_ = false;
   bool follows_ = false;  // nothing is known to have stood still since
@@ -186,25 +186,25 @@ class DevicePace {
     least_ = kNone;
     if (*offset_ == before) return std::nullopt;
     const PacePart out{tick, *offset_};
-    told_[next_++ % told_.size()] = {out, 0};
-    waiting_ = std::min(waiting_ + 1, told_.size());
+    sent_[next_++ % sent_.size()] = {out, 0};
+    waiting_ = std::min(waiting_ + 1, sent_.size());
     return out;
   }
 
   /// Whether there are changes that the client may not know.
   bool waits() const noexcept { return waiting_ > 0; }
-  /// Tell them in the datagram of this number.
-  void tell(DatagramWriter& writer, std::uint64_t number) noexcept {
+  /// Send them in the datagram of this number.
+  void send(DatagramWriter& writer, std::uint64_t number) noexcept {
     for (std::size_t back = waiting_; back > 0; --back) {
-      Told& told = told_[(next_ - back) % told_.size()];
-      if (!writer.add(told.part)) return;
-      if (told.number == 0) told.number = number;
+      Sent& sent = sent_[(next_ - back) % sent_.size()];
+      if (!writer.add(sent.part)) return;
+      if (sent.number == 0) sent.number = number;
     }
   }
   /// in   highest  number that the client has acknowledged
   void acknowledged(std::uint64_t highest) noexcept {
     while (waiting_ > 0) {
-      const Told& oldest = told_[(next_ - waiting_) % told_.size()];
+      const Sent& oldest = sent_[(next_ - waiting_) % sent_.size()];
       if (oldest.number == 0 || oldest.number > highest) return;
       --waiting_;
     }
@@ -212,9 +212,9 @@ class DevicePace {
 
  private:
   static constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
-  struct Told {
+  struct Sent {
     PacePart part;
-    std::uint64_t number = 0;  // of the first datagram that told it; every one since did, too
+    std::uint64_t number = 0;  // of the first datagram that carried it; every one since did, too
   };
 
   std::int64_t period_, margin_;  // [ticks]
@@ -222,7 +222,7 @@ class DevicePace {
   std::int64_t tick_ = 0;       // of the last step
   std::int64_t least_ = kNone;  // [ticks] until a packet acts that came since the last change; 0 or less: too late
   std::int64_t until_ = 0;      // before this tick the pace does not get faster
-  std::array<Told, 8> told_{};  // a ring
+  std::array<Sent, 8> sent_{};  // a ring
   std::size_t next_ = 0, waiting_ = 0;
 };
 
@@ -237,7 +237,7 @@ class ForceFade {
     std::uint64_t fresh = 0, stale = 0;  ///< [us]
   };
   static constexpr Limits kUsual{70'000, 100'000};
-  static constexpr Limits kDriven{300'000, 400'000};  ///< of a client that works out what its device does
+  static constexpr Limits kDriven{300'000, 400'000};  ///< of a client that computes what its device does
   static constexpr Limits kOld{700'000, 1'000'000};   ///< of the state that is shown, as an answer to the own device
   static constexpr std::uint64_t kReturn = 500'000;   ///< [us]
   static constexpr std::int64_t kAll = 65536;
@@ -253,7 +253,7 @@ class ForceFade {
   /// in   now >= heard  [us]; `now` never decreases;  old  [us] age of the state that is shown.   out  x 2^-16
   std::int64_t fraction(std::uint64_t now, std::uint64_t heard, std::uint64_t old = 0) noexcept {
     const std::int64_t most = std::min(left(now - heard, limits_), left(old, kOld));
-    if (now - looked_at_ > limits_.stale) {  // nobody looked: what was felt meanwhile is not known
+    if (now - looked_at_ > limits_.stale) {  // nobody looked: what was rendered meanwhile is not known
       fraction_ = 0;
       looked_at_ = now;
     }

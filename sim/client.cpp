@@ -118,7 +118,7 @@ Client::Client(Server& server, std::optional<Receiver> receiver)
     : scene_(server.scene()),
       receiver_(std::move(receiver)),
       rigid_(scene_, server.stream_scene() ? RigidView::News::of_all : RigidView::News::of_changed),
-      felt_(scene_.users.size()),
+      rendered_(scene_.users.size()),
       contacts_(scene_.users.size()),
       stiffness_(scene_.users.size()) {
   poses_.assign(rigid_.poses().begin(), rigid_.poses().end());
@@ -271,10 +271,10 @@ void Client::touch(std::size_t user, const DeviceSample& device, const Rendering
   }
   if (compensation_ && !contacts_[user]) compensation_->release(user);
   if (prediction_) measured(costs_.compensation, [&] { prediction_->step(device); });
-  felt_[user] = how.fraction * rendered_fraction(force, scene_.users[user].device.max_force) * force;
+  rendered_[user] = how.fraction * rendered_fraction(force, scene_.users[user].device.max_force) * force;
   if (ports_.empty()) return;
-  const Vec3 passive = ports_[user].limit(device.position, felt_[user]);
-  felt_[user] = rendered_fraction(passive, scene_.users[user].device.max_force) * passive;
+  const Vec3 passive = ports_[user].limit(device.position, rendered_[user]);
+  rendered_[user] = rendered_fraction(passive, scene_.users[user].device.max_force) * passive;
 }
 
 const Pose& Client::watched(std::size_t user) const noexcept {

@@ -41,7 +41,7 @@ class Compensation {
   void move(std::size_t user, const DeviceSample& device) noexcept { reductions_[user].move(device.position); }
   /// What the object that a user touches is shown as.
   struct Shown {
-    const DeformableObject* deformable = nullptr;  ///< as declared, of touch.surface; none: its stiffness is not told
+    const DeformableObject* deformable = nullptr;  ///< as declared, of touch.surface; none: its stiffness is not declared
     std::span<const GridForce> load{};             ///< Receiver::load, of touch.contact.object
     unsigned force_exp = 0;
     Pose pose;
@@ -82,7 +82,7 @@ class Client {
   /// err  errors of Receiver::push   no allocation
   Result<void> receive(std::span<const Packet> packets) noexcept;
   /// Show the tick of this frame: the state received up to it, or the truth.   no allocation
-  /// in   truth  tells which shapes are new; without a codec, the state shown
+  /// in   truth  says which shapes are new; without a codec, the state shown
   /// pre  called for every tick: a shape, and without a codec a pose, is read only when it is new; without a codec truth.changed is set
   void show(const TraceFrame& truth) noexcept;
   /// Show a tick of what came over a network. A shape is read once in each of its frames; one that rests is not read.   no allocation
@@ -100,7 +100,7 @@ class Client {
   /// Move one user's probe, and render its force.   pre  the receiver of the last show() lives, or show_nothing() was called
   /// no allocation, but by physics of its own (CompensationMethod::simulation) in its first ticks; it takes one call per tick
   void touch(std::size_t user, const DeviceSample& device, const Rendering& how) noexcept;
-  /// What the user's device felt in the last touch(), if anything.
+  /// What the user's device touched in the last touch(), if anything.
   const std::optional<DeviceContact>& contact(std::size_t user) const noexcept { return contacts_[user]; }
 
   /// Measure costs() from now on.
@@ -109,7 +109,7 @@ class Client {
 
   /// [N/m] of the spring that rendered a user's force in the last touch(); 0: of none.
   double stiffness(std::size_t user) const noexcept { return stiffness_[user]; }
-  const Vec3& felt(std::size_t user) const noexcept { return felt_[user]; }  ///< [N] rendered in the last touch()
+  const Vec3& rendered_force(std::size_t user) const noexcept { return rendered_[user]; }  ///< [N] rendered in the last touch()
   std::span<const Pose> poses() const noexcept { return poses_; }            ///< as shown, one per object of the trace
   /// What it received for the tick that it shows: the same, unless it simulates itself.
   std::span<const Pose> received() const noexcept { return prediction_ ? prediction_->heard() : poses_; }
@@ -146,7 +146,7 @@ class Client {
   std::optional<MsdView> msds_;
   std::optional<DeformableView> deformables_;
   std::vector<Touchable*> objects_;  // these, and those that the server lends
-  std::vector<Vec3> felt_;           // [N] one per user
+  std::vector<Vec3> rendered_;           // [N] one per user
   std::vector<std::optional<DeviceContact>> contacts_;
   std::vector<double> stiffness_;  // [N/m]
   bool measures_ = false;

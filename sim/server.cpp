@@ -53,14 +53,14 @@ Result<void> Server::add_objects(const ServerOptions& options) {
 }
 
 /// What the clients know of the objects that their devices push or hold.
-Server::Driven Server::driven_objects(double told) const {
+Server::Driven Server::driven_objects(double model_scale) const {
   Driven out(scene_.objects.size());
-  if (told == 0) return out;
+  if (model_scale == 0) return out;
   for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
     const SceneObject& object = scene_.objects[i];
     if (object.dof == Dof::none || !scene_.touch) continue;
-    const DrivenPhysics physics{.mass = told * object.mass,
-                                .inertia = told * rigid_->inertia(i),
+    const DrivenPhysics physics{.mass = model_scale * object.mass,
+                                .inertia = model_scale * rigid_->inertia(i),
                                 .stiffness = scene_.touch->stiffness,
                                 .hold = scene_.touch->lift_stiffness,
                                 .friction = scene_.touch->friction,
@@ -80,7 +80,7 @@ MotionPhysics Server::motion_physics() const {
 
 Result<void> Server::add_codec(const ServerCodec& codec) {
   const bool drives = codec.sessions && codec.coding.rigid == RigidProfile::main;
-  SceneBuilder builder = scene_builder(scene_, drives ? driven_objects(codec.told) : Driven{});
+  SceneBuilder builder = scene_builder(scene_, drives ? driven_objects(codec.client_model_scale) : Driven{});
   if (drives) builder.motion(motion_physics());
   builder.rigid_profile(codec.coding.rigid);
   for (std::size_t i = 0; i < scene_.deformables.size(); ++i) {
@@ -91,7 +91,7 @@ Result<void> Server::add_codec(const ServerCodec& codec) {
     }
     TACTUS_CHECK(add_deformable(builder, deformables_->meshes()[i], coding));
     if (!codec.sessions || coding.deformable.profile != DeformableProfile::main || coding.deformable.layered) continue;
-    if (auto physics = elastic_physics(scene_.deformables[i], scene_.gravity, deformables_->info()[i].shared, codec.told))
+    if (auto physics = elastic_physics(scene_.deformables[i], scene_.gravity, deformables_->info()[i].shared, codec.client_model_scale))
       builder.elastic(std::move(*physics));
   }
   builder.declare_bounds(codec.sender.triggers, codec.sender.deformable.thresholds, codec.sender.load);

@@ -24,7 +24,7 @@ struct ServerCodec {
   SenderOptions sender;
   TraceCoding coding{};   ///< of the scene's objects
   bool sessions = false;  ///< clients have sessions of their own, which code for them
-  double told = 1;  ///< with sessions: mass and Young's modulus that clients are told, times the true ones; 0: they are told none
+  double client_model_scale = 1;  ///< with sessions: mass and Young's modulus declared to clients, times the true ones; 0: none are declared
   DecodeLimits limits{};  ///< of who takes the scene
 };
 
@@ -46,8 +46,8 @@ class Server {
 
   /// Write the state of this tick, before its forces act, to frame().   no allocation
   void observe() noexcept;
-  /// Move every user's probe; write contacts and forces to frame(). The force that a hand felt is the server's there, until whoever has
-  /// clients that tell theirs writes it.   in  devices  one per user   no allocation
+  /// Move every user's probe; write contacts and forces to frame(). The force rendered to a hand is the server's there, until whoever has
+  /// clients that send theirs writes it.   in  devices  one per user   no allocation
   void touch(std::span<const DeviceSample> devices) noexcept;
   /// Of the force of this user's hand only a fraction acts from now on: 0 lifts it off, 1 sets it down.
   void lift(std::size_t user, double fraction) noexcept { held_[user] = fraction; }
@@ -73,7 +73,7 @@ class Server {
   Server(const Scene& scene, const ServerOptions& options);
   Result<void> add_objects(const ServerOptions& options);
   using Driven = std::vector<std::optional<DrivenPhysics>>;
-  Driven driven_objects(double told) const;
+  Driven driven_objects(double model_scale) const;
   MotionPhysics motion_physics() const;
   Result<void> add_codec(const ServerCodec& codec);
   void add_noise() noexcept;

@@ -49,7 +49,7 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   ServerOptions of_server{options.seed, {}, options.mesh_noise, options.estimate_every, options.parts};
   const bool is_remote = options.channel && options.channel->network;
   if (options.channel)
-    of_server.codec = ServerCodec{options.channel->sender, options.channel->coding, is_remote, options.channel->told};
+    of_server.codec = ServerCodec{options.channel->sender, options.channel->coding, is_remote, options.channel->client_model_scale};
   auto impl = std::make_unique<Impl>();
   impl->seed = options.seed;
   TACTUS_TRY(impl->server, Server::create(scene, of_server));
@@ -83,7 +83,7 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
 void Simulation::Impl::move_hands(std::size_t but) noexcept {
   for (std::size_t i = 0; i < hands.size(); ++i)
     if (i != but) {
-      devices[i] = hands[i].step(client(i).felt(i), client(i).watched(i));
+      devices[i] = hands[i].step(client(i).rendered_force(i), client(i).watched(i));
       aims[i] = hands[i].aim_speed() < kStill ? TouchRecord::Aim::rests : TouchRecord::Aim::moves;
     }
 }
@@ -144,7 +144,7 @@ tl::expected<std::span<const Packet>, Diagnostic> Simulation::step(std::span<con
   in.render(devices);  // 4
   for (std::size_t i = 0; i < in.records.size(); ++i) {
     UserSample& user = in.server->frame().users[i];
-    user.force = in.client(i).felt(i);
+    user.force = in.client(i).rendered_force(i);
     in.records[i].add(user, std::exchange(in.aims[i], TouchRecord::Aim::unknown));
   }
   TACTUS_CHECK(in.server->step());  // 5
@@ -184,7 +184,7 @@ const TouchSummary& Simulation::touched(std::size_t user) const noexcept { retur
 Replica& Simulation::replica() noexcept { return impl_->client(0).replica(); }
 SharedScene Simulation::stream_scene() const noexcept { return impl_->server->stream_scene(); }
 
-double Simulation::bears(std::size_t user) const noexcept {
+double Simulation::tolerated_stiffness(std::size_t user) const noexcept {
   return sampled_limit(impl_->hands[user].impedance(), impl_->server->scene().users[user].device);
 }
 

@@ -37,7 +37,7 @@ struct ChannelOptions {
   SenderOptions sender;
   ReplicaOptions replica;
   TraceCoding coding{};        ///< of the scene's objects
-  double told = 1;             ///< with a network: as ServerCodec::told
+  double client_model_scale = 1;             ///< with a network: as ServerCodec::client_model_scale
   const Scene* own = nullptr;  ///< what clients simulate themselves, if they do; null: the scene
   bool timed = false;          ///< with a network: client_costs() are measured, about 1 us per tick and user
   NetworkMaker network{};      ///< each user has a client behind it; none: one client, and no time passes
@@ -99,7 +99,7 @@ class Simulation {
   /// Of this tick.   pre  there is a channel with a network, and it is timed
   const ClientCosts& client_costs(std::size_t user) const noexcept;
   /// [N/m] largest stable stiffness of a coupling to a fixed point (passivity.h)
-  double bears(std::size_t user) const noexcept;
+  double tolerated_stiffness(std::size_t user) const noexcept;
 
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;

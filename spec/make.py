@@ -26,7 +26,7 @@ BLOCK = re.compile(r"(<!-- command: (.*?) -->\n)(.*?)(<!-- end of command -->)",
 
 
 # ---- Worked examples ------------------------------------------------------------------------------------------------
-def told_by(command: str) -> str:
+def output_of(command: str) -> str:
     words = shlex.split(command)
     run = subprocess.run([sys.executable, *words[1:]], cwd=ROOT, capture_output=True, text=True, check=False)
     if run.returncode:
@@ -35,7 +35,7 @@ def told_by(command: str) -> str:
 
 
 def with_examples(text: str) -> str:
-    return BLOCK.sub(lambda m: f"{m.group(1)}\n`{m.group(2)}`\n\n{told_by(m.group(2))}\n\n{m.group(4)}", text)
+    return BLOCK.sub(lambda m: f"{m.group(1)}\n`{m.group(2)}`\n\n{output_of(m.group(2))}\n\n{m.group(4)}", text)
 
 
 # ---- Check ----------------------------------------------------------------------------------------------------------

@@ -106,7 +106,7 @@ install_rules() { # BUILD_DIR
 
 check_absent() { # COMPONENT
   if refused=$(cmake -S tests/consumer/installed -B "$scratch/absent" -DCOMPONENT="$1" -DCMAKE_PREFIX_PATH="$prefix" 2>&1); then die "$1 is found, and is not installed"; fi
-  echo "$refused" | tr -s ' \n' ' ' | grep -qE "Component $1 is not in this installation.* -DTACTUS_WITH_[A-Z0-9]+=ON" || die "who wants $1 is not told how to get it"
+  echo "$refused" | tr -s ' \n' ' ' | grep -qE "Component $1 is not in this installation.* -DTACTUS_WITH_[A-Z0-9]+=ON" || die "who wants $1 does not learn how to get it"
   rm -rf "$scratch/absent"
 }
 

@@ -44,7 +44,7 @@ tactus_status report(const Error& error, tactus_error* out) noexcept;
 /// Outcome of a function that succeeded: TACTUS_OK, TACTUS_NOTHING or TACTUS_BUFFER_TOO_SMALL.
 using Outcome = Result<tactus_status>;
 
-/// Run the body of a function of the interface: its error is told, and nothing is thrown.
+/// Run the body of a function of the interface: its error is reported, and nothing is thrown.
 template <class Body>
 tactus_status call(tactus_error* error, Body&& body) noexcept try {
   const Outcome outcome = std::forward<Body>(body)();

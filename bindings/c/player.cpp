@@ -40,10 +40,10 @@ tactus_status tactus_player_play(tactus_player* player, int64_t tick, tactus_pac
     if (!played) return TACTUS_NOTHING;
     player->receiver.updates = played->updates;
     if (info == nullptr) return TACTUS_OK;
-    tactus_packet_info told = info_of(player->player.scene(), *played);
-    told.bytes = static_cast<std::uint32_t>(played->bytes);
-    told.offset = played->offset;
-    answer(info, told);
+    tactus_packet_info out = info_of(player->player.scene(), *played);
+    out.bytes = static_cast<std::uint32_t>(played->bytes);
+    out.offset = played->offset;
+    answer(info, out);
     return TACTUS_OK;
   });
 }

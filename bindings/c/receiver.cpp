@@ -115,9 +115,9 @@ tactus_status tactus_receiver_push(tactus_receiver* receiver, const uint8_t* pac
     TACTUS_TRY(const DecodedPacket decoded, to->push(bytes, arrival));
     receiver->updates = decoded.updates;
     if (info == nullptr) return TACTUS_OK;
-    tactus_packet_info told = info_of(*to->scene(), decoded);
-    told.bytes = static_cast<std::uint32_t>(size);
-    answer(info, told);
+    tactus_packet_info out = info_of(*to->scene(), decoded);
+    out.bytes = static_cast<std::uint32_t>(size);
+    answer(info, out);
     return TACTUS_OK;
   });
 }

@@ -286,8 +286,8 @@ tactus_status tactus_scene_builder_elastic(tactus_scene_builder* builder, const 
   return call(error, [&]() -> Outcome {
     if (builder == nullptr || physics == nullptr) return refuse();
     TACTUS_TRY(const tactus_elastic_physics p, given_or(physics, kElasticPhysics));
-    TACTUS_TRY(ElasticPhysics told, physics_of(p));
-    builder->builder.elastic(std::move(told));
+    TACTUS_TRY(ElasticPhysics body, physics_of(p));
+    builder->builder.elastic(std::move(body));
     return TACTUS_OK;
   });
 }

@@ -188,7 +188,7 @@ typedef struct tactus_packet_info {
   uint32_t restarts;  /* decoded: 1: of another or restarted sender, or after a long outage */
 } tactus_packet_info;
 
-enum { TACTUS_OUT_OF_INTEREST = 7 }; /* level of detail of an object that a client is not told of */
+enum { TACTUS_OUT_OF_INTEREST = 7 }; /* level of detail of an object that is not sent to a client */
 
 /* ---------------------------------------------------------------- scene */
 
@@ -204,7 +204,7 @@ typedef struct tactus_scene_info {
   uint32_t smoothed; /* 1: rigid objects are of profile main */
   uint32_t has_bounds;
   uint32_t has_loads, load_users;
-  double interest_full, interest_reach; /* m: within these a client is told of rigid objects; 0: of all */
+  double interest_full, interest_reach; /* m: within these rigid objects are sent to a client; 0: all are */
 } tactus_scene_info;
 
 typedef struct tactus_rigid_info {
@@ -247,7 +247,7 @@ TACTUS_API tactus_status tactus_scene_get_rest(const tactus_scene* scene, uint32
 /* Corners, counter-clockwise seen from outside.   in  capacity  [numbers] at least 3 triangles */
 TACTUS_API tactus_status tactus_scene_get_triangles(const tactus_scene* scene, uint32_t object, uint32_t* out, size_t capacity,
                                                     tactus_error* error);
-/* Stiffness of each vertex, N/m, infinite where it does not move. TACTUS_NOTHING: not told.   in  capacity  at least the vertices */
+/* Stiffness of each vertex, N/m, infinite where it does not move. TACTUS_NOTHING: not declared.   in  capacity  at least the vertices */
 TACTUS_API tactus_status tactus_scene_get_stiffness(const tactus_scene* scene, uint32_t object, double* out, size_t capacity,
                                                     tactus_error* error);
 /* Cluster of each vertex; TACTUS_NOTHING: it has none.   in  capacity  at least the vertices */
@@ -296,7 +296,7 @@ TACTUS_API tactus_status tactus_receiver_create(const tactus_scene* scene, const
 TACTUS_API void tactus_receiver_destroy(tactus_receiver* receiver); /* does nothing to a borrowed one */
 TACTUS_API const tactus_scene* tactus_receiver_scene(const tactus_receiver* receiver);
 /* Decode a packet.   in  now  [ticks] time of arrival on the receiver's clock, or TACTUS_NO_CLOCK;  info  may be NULL
-   err  tactus_error_advice() tells how to react: R-PKT, R-RIG, R-DEF, R-RNG */
+   err  tactus_error_advice() says how to react: R-PKT, R-RIG, R-DEF, R-RNG */
 TACTUS_API tactus_status tactus_receiver_push(tactus_receiver* receiver, const uint8_t* packet, size_t size, int64_t now,
                                               tactus_packet_info* info, tactus_error* error);
 /* Objects that the packet decoded last named.   out  count  needed or written */
@@ -312,7 +312,7 @@ TACTUS_API tactus_status tactus_receiver_levels(const tactus_receiver* receiver,
 /* Displacements from rest as shown at a tick, x y z of vertex 0 first, m.   in  capacity  [floats] at least 3 vertices */
 TACTUS_API tactus_status tactus_receiver_displacements(tactus_receiver* receiver, uint32_t object, int64_t tick, float* out,
                                                        size_t capacity, tactus_error* error);
-/* Forces on a rigid object, N, world: external, hold, then one per user. TACTUS_NOTHING: the scene tells none of it.
+/* Forces on a rigid object, N, world: external, hold, then one per user. TACTUS_NOTHING: the scene sends none of it.
    in  capacity  [doubles] at least 3 (2 + load_users) */
 TACTUS_API tactus_status tactus_receiver_loads(const tactus_receiver* receiver, uint32_t object, int64_t tick, double* out,
                                                size_t capacity, tactus_error* error);

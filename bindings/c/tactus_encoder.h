@@ -22,14 +22,14 @@ typedef struct tactus_scene_options {
   uint32_t position_exp, velocity_exp, rotation_exp, angular_velocity_exp; /* grids; 22 17 20 12 */
   uint32_t baselines;     /* states that a receiver keeps, 1 to 64; 1. A session wants 64 */
   uint32_t rigid_profile; /* TACTUS_PROFILE_...; main: look-ahead velocities, and clients smooth the errors of updates */
-  uint32_t has_loads;     /* 1: tell the forces on rigid objects; 0 */
-  uint32_t load_users;    /* whose forces are told; 1 */
+  uint32_t has_loads;     /* 1: send the forces on rigid objects; 0 */
+  uint32_t load_users;    /* whose forces are sent; 1 */
   uint32_t force_exp;     /* forces are multiples of 2^-force_exp N; 10 */
   uint32_t reserved;
   double extrapolation; /* s after which an object without updates stops; 2 */
   double gravity[3];    /* m/s^2, world: updates may choose to fall; 0 */
   double friction;      /* ... or to slide to rest; 0 */
-  /* m: a client is told of rigid objects in full up to interest_full from where it looks, with bounds twice as wide at twice the distance,
+  /* m: rigid objects are sent to a client in full up to interest_full from where it looks, with bounds twice as wide at twice the distance,
      and of none beyond interest_reach; 0: of all in full */
   double interest_full, interest_reach;
   /* m: how far from the origin positions get, along any axis. The position grid becomes as fine as that permits, and none finer than
@@ -53,7 +53,7 @@ typedef struct tactus_deformable_options {
   size_t fixed_count;
   const double* vectors;   /* a basis to declare: modes x vertices x 3, any scale; NULL */
   size_t modes;            /* 0 to 64 */
-  const double* stiffness; /* N/m of each vertex, infinite where it does not move; NULL: not told */
+  const double* stiffness; /* N/m of each vertex, infinite where it does not move; NULL: not declared */
   size_t stiffness_count;  /* vertices */
   const uint8_t* clusters; /* a basis of vertices that move alike (tactus_find_clusters): cluster of each vertex; NULL */
   uint32_t cluster_count;  /* 0 to 64: each is below it; 0: none. In place of a basis of other kinds */
@@ -109,8 +109,8 @@ TACTUS_API tactus_status tactus_scene_builder_deformable(tactus_scene_builder* b
                                                          const tactus_deformable_options* options, tactus_error* error);
 TACTUS_API tactus_status tactus_driven_physics_init(tactus_driven_physics* physics, size_t size);
 TACTUS_API tactus_status tactus_elastic_physics_init(tactus_elastic_physics* physics, size_t size);
-/* In sessions, let a participant work out from its own device where the rigid object added last goes. Packets tell what that gets wrong.
-   _build checks it: err  R-API-4 a constant cannot be told; R-API-14 no rigid object was added */
+/* In sessions, let a participant compute from its own device where the rigid object added last goes. Packets correct what that gets wrong.
+   _build checks it: err  R-API-4 a constant cannot be declared; R-API-14 no rigid object was added */
 TACTUS_API tactus_status tactus_scene_builder_driven(tactus_scene_builder* builder, const tactus_driven_physics* physics,
                                                      tactus_error* error);
 /* The same of how the deformable object added last deforms: profile main, not layered, frame_period a whole number up to 1024.
@@ -206,7 +206,7 @@ typedef struct tactus_truth {
 enum {
   TACTUS_PART_OBJECT =
       0, /* a rigid object: R-API-1 not finite, R-API-2 off the grid, R-API-3 no rotation, R-API-6 off its axes */
-  TACTUS_PART_CONTACT = 1, /* a contact that does not count: R-API-1, R-API-15; 16 at most are told */
+  TACTUS_PART_CONTACT = 1, /* a contact that does not count: R-API-1, R-API-15; 16 at most are reported */
   TACTUS_PART_SHAPE = 2,   /* of a deformable object: R-API-1, 2 */
   TACTUS_PART_TOUCH = 3,   /* of a deformable object, which does not count: R-API-1, R-API-15 */
   TACTUS_PART_LOAD = 4     /* of a rigid object: R-API-1, 2 */
@@ -241,7 +241,7 @@ TACTUS_API tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32
                                                    tactus_error* error);
 /* in   answer  [ticks] until a packet is acknowledged, 0: not known;  loss  fraction of packets */
 TACTUS_API tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t answer, double loss, tactus_error* error);
-/* In a scene with interest: where the receiver looks from, from the next tick on. Before the first call it is told of all in full.
+/* In a scene with interest: where the receiver looks from, from the next tick on. Before the first call it is sent all in full.
    in   places  x y z of each [m, world], two at most: others do not count;  count  0: it looks from nowhere that is known */
 TACTUS_API tactus_status tactus_sender_look_from(tactus_sender* sender, const double* places, size_t count, tactus_error* error);
 TACTUS_API tactus_status tactus_sender_state_hash(const tactus_sender* sender, uint32_t substream, uint64_t* hash,
@@ -253,7 +253,7 @@ typedef struct tactus_writer tactus_writer;
 
 TACTUS_API tactus_status tactus_writer_create(const tactus_scene* scene, tactus_writer** writer, tactus_error* error);
 TACTUS_API void tactus_writer_destroy(tactus_writer* writer);
-/* in   tick  not falling;  key  as tactus_packet_info tells */
+/* in   tick  not falling;  key  as in tactus_packet_info */
 TACTUS_API tactus_status tactus_writer_add(tactus_writer* writer, int64_t tick, const uint8_t* packet, size_t size, uint32_t key,
                                            tactus_error* error);
 /* Add the index and the end of the file. */

@@ -75,7 +75,7 @@ typedef struct tactus_session_status {
   uint32_t seat;        /* what a participant plays, from 1; 0: nothing; TACTUS_ONLY_LOOKS_ON */
   uint32_t wanted_seat; /* server: 0: any */
   uint64_t token;       /* client: with which another one goes on with this session (tactus_client_options); 0: none yet */
-  uint64_t world;       /* client: what the server simulates, as its program tells; 0: it does not */
+  uint64_t world;       /* client: what the server simulates, as its program declares; 0: it does not */
 } tactus_session_status;
 
 /* What the device feels: force = stiffness (proxy - position of the device). */
@@ -97,11 +97,11 @@ typedef struct tactus_server_options {
   uint64_t silence;                    /* us after which a client counts as gone; 120 s */
   double widening;                     /* factor by which bounds widen at most where the network is too slow, 1 to 64; 8 */
   const tactus_sender_options* sender; /* for every client; NULL: defaults */
-  uint64_t world;                      /* what is simulated, for programs of clients to compare; 0: not told */
+  uint64_t world;                      /* what is simulated, for programs of clients to compare; 0: not declared */
 } tactus_server_options;
 
 TACTUS_API tactus_status tactus_server_options_init(tactus_server_options* options, size_t size);
-/* in   entropy  64 bits from the system that nobody else can tell */
+/* in   entropy  64 bits from the system that nobody else can guess */
 TACTUS_API tactus_status tactus_server_create(const tactus_scene* scene, const tactus_server_options* options, uint64_t entropy,
                                               uint64_t now, tactus_server** server, tactus_error* error);
 TACTUS_API void tactus_server_destroy(tactus_server* server);
@@ -118,7 +118,7 @@ TACTUS_API tactus_status tactus_server_held(const tactus_server* server, tactus_
 /* Another scene; ticks begin anew. */
 TACTUS_API tactus_status tactus_server_replace_scene(tactus_server* server, const tactus_scene* scene, uint64_t now,
                                                      tactus_error* error);
-/* What a participant plays, from 1; 0: nothing; TACTUS_ONLY_LOOKS_ON. It is told. Who comes back with its token has the seat that it had. */
+/* What a participant plays, from 1; 0: nothing; TACTUS_ONLY_LOOKS_ON. The client is sent it. Who comes back with its token has the seat that it had. */
 TACTUS_API tactus_status tactus_server_seat(tactus_server* server, uint32_t client, uint32_t seat, tactus_error* error);
 /* in   reason  TACTUS_LEAVE_... */
 TACTUS_API tactus_status tactus_server_close_client(tactus_server* server, uint32_t client, uint32_t reason, tactus_error* error);
@@ -168,8 +168,8 @@ TACTUS_API tactus_status tactus_client_handle_timeout(tactus_client* client, uin
 /* The device now; at most one sample per tick counts.   in  contact  NULL: it touches nothing */
 TACTUS_API tactus_status tactus_client_submit(tactus_client* client, uint64_t now, const tactus_device_sample* sample,
                                               const tactus_device_contact* contact, tactus_error* error);
-/* In a scene with interest: where the user looks from, x y z [m, world], apart from the device; before _open, too, as an observer is told
-   of all until it has said so. tactus_receiver_levels tells what comes of it. What is not finite, or beyond 8000 km, does not count. */
+/* In a scene with interest: where the user looks from, x y z [m, world], apart from the device; before _open, too, as an observer is sent
+   all until it has said so. tactus_receiver_levels shows what comes of it. What is not finite, or beyond 8000 km, does not count. */
 TACTUS_API tactus_status tactus_client_look_from(tactus_client* client, uint64_t now, const double* place, tactus_error* error);
 /* in   capacity  at least TACTUS_DATAGRAM_BYTES */
 TACTUS_API tactus_status tactus_client_poll_datagram(tactus_client* client, uint64_t now, uint8_t* bytes, size_t capacity,

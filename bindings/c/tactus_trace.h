@@ -21,7 +21,7 @@ typedef struct tactus_trace_info {
   uint32_t size;
   uint32_t tick_rate; /* per second */
   uint32_t objects, users, meshes;
-  uint32_t has_frames; /* 1: the file tells how many frames it has */
+  uint32_t has_frames; /* 1: the file states how many frames it has */
   uint64_t frames;
   const char* source; /* "sim push-1dof seed 1"; UTF-8, like all names; they live as long as the trace */
 } tactus_trace_info;
@@ -32,8 +32,8 @@ typedef struct tactus_trace_object {
   const char* name;
 } tactus_trace_object;
 
-/* Forces of a user that a trace knows, bits. A server is not told what a hand felt, nor a client what the server rendered. */
-enum { TACTUS_FORCE_FELT = 1, TACTUS_FORCE_SERVER = 2 };
+/* Forces of a user that a trace knows, bits. A server does not receive what was rendered to a hand, nor a client what the server rendered. */
+enum { TACTUS_FORCE_RENDERED = 1, TACTUS_FORCE_SERVER = 2 };
 
 typedef struct tactus_trace_user {
   uint32_t size;
@@ -55,7 +55,7 @@ typedef struct tactus_trace_mesh {
 typedef struct tactus_user_sample {
   tactus_device_sample device;
   tactus_contact contact; /* with a rigid object */
-  double force[3];        /* N, world: what the hand felt; without TACTUS_FORCE_FELT the server's */
+  double force[3];        /* N, world: rendered to the hand; without TACTUS_FORCE_RENDERED the server's */
   double server_force[3]; /* N, world: rendered at the server from the true state; without TACTUS_FORCE_SERVER 0 */
   int32_t touches_mesh;   /* 1: the next ones count */
   uint32_t mesh, triangle;
@@ -125,7 +125,7 @@ TACTUS_API void tactus_trace_writer_destroy(tactus_trace_writer* writer);
 /* in   dof  TACTUS_DOF_...   err  R-API-5 after the first tick */
 TACTUS_API tactus_status tactus_trace_writer_object(tactus_trace_writer* writer, const char* name, uint32_t dof,
                                                     tactus_error* error);
-/* in   senses, forces  as tactus_trace_user tells   err  R-API-5 likewise; R-API-4 no such bit, or no force */
+/* in   senses, forces  as in tactus_trace_user   err  R-API-5 likewise; R-API-4 no such bit, or no force */
 TACTUS_API tactus_status tactus_trace_writer_user(tactus_trace_writer* writer, const char* name, uint32_t senses, uint32_t forces,
                                                   tactus_error* error);
 /* in   vertices, triangles  as tactus_scene_builder_deformable;  period  nominal ticks from shape to shape   err  R-API-5 likewise */

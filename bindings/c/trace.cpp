@@ -40,8 +40,8 @@ std::uint32_t bits_of(const DeviceSenses& senses) noexcept {
 }
 
 std::uint32_t bits_of(KnownForces forces) noexcept {
-  if (forces == KnownForces::both) return TACTUS_FORCE_FELT | TACTUS_FORCE_SERVER;
-  return forces == KnownForces::felt ? TACTUS_FORCE_FELT : TACTUS_FORCE_SERVER;
+  if (forces == KnownForces::both) return TACTUS_FORCE_RENDERED | TACTUS_FORCE_SERVER;
+  return forces == KnownForces::rendered ? TACTUS_FORCE_RENDERED : TACTUS_FORCE_SERVER;
 }
 
 void put(const Vec3& v, double (&out)[3]) noexcept {
@@ -131,7 +131,7 @@ Result<void> read_frame(tactus_trace& trace) {
   if (more) return {};
   Diagnostic error = trace.reader.explain(more.error());
   error.file = trace.path;
-  return tell(error);
+  return keep_words(error);
 }
 
 /// A trace at its first frame, for the caller.
@@ -149,7 +149,7 @@ std::string& error_words() noexcept {
   return words;
 }
 
-tl::unexpected<Error> tell(const Diagnostic& error) {
+tl::unexpected<Error> keep_words(const Diagnostic& error) {
   const bool says_more = !place_of(error).empty() || !error.cause.empty() || !error.remedy.empty();
   if (says_more) error_words() = to_string(error);
   return tl::unexpected(error.error);
@@ -169,7 +169,7 @@ tactus_status tactus_trace_open(const char* path, tactus_trace** trace, tactus_e
     error_words().clear();
     if (path == nullptr || trace == nullptr) return refuse();
     auto reader = TraceReader::open(path, {});
-    if (!reader) return tell(reader.error());
+    if (!reader) return keep_words(reader.error());
     return hand_out({.reader = *std::move(reader), .path = path}, trace);
   });
 }
@@ -180,7 +180,7 @@ tactus_status tactus_trace_open_memory(const uint8_t* bytes, size_t size, tactus
     if (trace == nullptr) return refuse();
     error_words().clear();
     auto reader = TraceReader::open_memory(all, {});
-    if (!reader) return tell(reader.error());
+    if (!reader) return keep_words(reader.error());
     return hand_out({.reader = *std::move(reader), .path = {}, .bytes = all}, trace);
   });
 }
@@ -220,9 +220,9 @@ tactus_status tactus_trace_get_user(const tactus_trace* trace, uint32_t user, ta
     TACTUS_TRY(const TraceInfo* of, info_of(trace));
     if (user >= of->users.size()) return refuse();
     TACTUS_CHECK(check_answer(info));
-    const TraceUser& told = of->users[user];
+    const TraceUser& out = of->users[user];
     answer(info,
-           {.size = 0, .senses = bits_of(told.senses), .name = told.name.c_str(), .forces = bits_of(told.forces), .reserved = 0});
+           {.size = 0, .senses = bits_of(out.senses), .name = out.name.c_str(), .forces = bits_of(out.forces), .reserved = 0});
     return TACTUS_OK;
   });
 }

@@ -113,9 +113,9 @@ tactus_status tactus_errors_get(const tactus_errors* errors, uint32_t quantity, 
     TACTUS_CHECK(check_answer(summary));
     const ErrorMetrics& rigid = errors->rigid;
     const ErrorSeries* series[] = {&rigid.position(), &rigid.rotation(), &rigid.force(), &rigid.perceived()};
-    tactus_error_summary told = summary_of(*series[quantity]);
-    if (quantity == TACTUS_ERROR_FORCE) told.worst_ratio = rigid.worst_haptic_ratio();
-    answer(summary, told);
+    tactus_error_summary out = summary_of(*series[quantity]);
+    if (quantity == TACTUS_ERROR_FORCE) out.worst_ratio = rigid.worst_haptic_ratio();
+    answer(summary, out);
     return TACTUS_OK;
   });
 }

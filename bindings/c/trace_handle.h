@@ -15,7 +15,7 @@ struct tactus_trace {
   std::span<const std::uint8_t> bytes{};  // of the caller
   tactus::TraceFrame frame{};
   bool has_frame = false;  // `frame` is one
-  bool is_first = true;    // ... which was read when the trace was opened, and not told yet
+  bool is_first = true;    // ... which was read when the trace was opened, and not returned yet
 };
 
 namespace tactus::c {
@@ -23,7 +23,7 @@ namespace tactus::c {
 /// What the last failing call of this thread has beyond its rule: tactus_trace_error_words().
 std::string& error_words() noexcept;
 /// The rule of an error whose words are kept.
-tl::unexpected<Error> tell(const Diagnostic& error);
+tl::unexpected<Error> keep_words(const Diagnostic& error);
 
 /// err  R-API-12 null
 inline Result<const TraceInfo*> info_of(const tactus_trace* trace) noexcept {

@@ -24,7 +24,7 @@ class TruthBuffer {
   static Result<void> take(const tactus_shape& shape, DeformableTruth& out) noexcept;
   void take_loads(const double* vectors) noexcept;
 
-  std::size_t users_;  // whose forces are told
+  std::size_t users_;  // whose forces are sent
   std::vector<RigidSample> objects_;
   std::vector<Contact> contacts_;
   std::vector<DeformableTruth> shapes_;

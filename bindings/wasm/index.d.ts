@@ -90,7 +90,7 @@ export class Scene {
   rest(deformable: number): Float32Array;
   /** Corners, T x 3, counter-clockwise seen from outside. */
   triangles(deformable: number): Uint32Array;
-  /** Of each vertex, N/m, infinite where it does not move; null: not told. */
+  /** Of each vertex, N/m, infinite where it does not move; null: not declared. */
   stiffness(deformable: number): Float64Array | null;
   readonly rigidBounds: RigidBounds | null;
   deformableBounds(deformable: number): DeformableBounds | null;
@@ -110,7 +110,7 @@ export class Receiver {
   poses(tick: number, out?: Float64Array): Float64Array;
   /** Displacements from rest as shown at a tick, V x 3, m. */
   displacements(deformable: number, tick: number, out?: Float32Array): Float32Array;
-  /** Forces on a rigid object (N): external, hold, then one per user, x y z each; null: the scene tells none of it. */
+  /** Forces on a rigid object (N): external, hold, then one per user, x y z each; null: the scene sends none of it. */
   loads(object: number, tick: number): Float64Array | null;
   /** 16 hexadecimal digits; equals that of the sender. */
   stateHash(substream: number): string;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The decoder of Tactus. index.d.ts tells what each part does; the names are those of the C interface, bindings/c/tactus.h.
+// The decoder of Tactus. index.d.ts says what each part does; the names are those of the C interface, bindings/c/tactus.h.
 import {constants, layouts} from "./interface.js";
 import {Memory} from "./memory.js";
 

@@ -152,7 +152,7 @@ void setup_compare(Command& app, Action& action) {
       "against the tick that it is of.\n"
       "Examples:\n"
       "  tactus compare push.mcap replica.mcap -p 8% --visual 6mm,2deg --plot errors.svg\n"
-      "  tactus compare server.mcap felt.mcap -p 4%");
+      "  tactus compare server.mcap client.mcap -p 4%");
   on_chosen<CompareOptions>(command, action, options, run);
 }
 

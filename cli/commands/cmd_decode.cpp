@@ -38,7 +38,7 @@ class TickSource {
     source.like_.emplace(std::move(*like));
     return source;
   }
-  /// The trace whose ticks are written, and what it holds in the last one that next() told; null: there is none.
+  /// The trace whose ticks are written, and what it holds in the last one that next() returned; null: there is none.
   const TraceReader* like() const noexcept { return like_ ? &*like_ : nullptr; }
   const TraceFrame& truth() const noexcept { return frame_; }
   tl::expected<std::optional<std::int64_t>, Failure> next(Player& player) {
@@ -94,7 +94,7 @@ tl::unexpected<Failure> refuse_at(std::int64_t tick, const Error& error, const D
 /// Whether the trace whose ticks are written is the truth of this stream: then the replica is held against it.
 bool may_compare(const TraceInfo& like, const TraceInfo& replica, const DecodeOptions& options, Report& report) {
   if (const auto same = check_same_scene(options.like, like, options.input, replica); !same) {
-    report.warnings.push_back("no errors are told: " + same.error().text);
+    report.warnings.push_back("no errors are reported: " + same.error().text);
     return false;
   }
   judge_by(nullptr, like, replica.bounds, report);
@@ -137,7 +137,7 @@ Outcome run(const DecodeOptions& options) {
   const std::span file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   auto player = Player::open(file, {.replica = options.replica, .limits = {}});
   if (!player && options.replica.interpolation != Interpolation::none && std::string_view(player.error().rule) == "R-API-4")
-    return refuse(shown_path(options.input) + ": the stream tells how a client passes over to its updates",
+    return refuse(shown_path(options.input) + ": the stream signals how a client passes over to its updates",
                   "Leave out --interpolate, or encode with --profile thesis.");
   if (!player) return refuse(options.input, player.error());
   if (!options.ticks && options.like.empty())
@@ -188,7 +188,7 @@ void setup_decode(Command& app, Action& action) {
   add_interpolation(command, options->replica);
   Option* like = command
                      .add_option("--like", options->like,
-                                 "Write the ticks of this trace, and tell the errors against it if it is what was encoded")
+                                 "Write the ticks of this trace, and report the errors against it if it is what was encoded")
                      ->type_name("TRACE");
   command.add_option("--ticks", options->ticks, "Number of ticks to write [up to the last packet]")
       ->check(whole_number(1, 0xffffffff))

@@ -10,7 +10,7 @@
 #include "cli/commands/commands.h"
 #include "cli/live/device_choice.h"
 #include "cli/live/device_loop.h"
-#include "cli/live/felt.h"
+#include "cli/live/rendered.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
@@ -137,8 +137,8 @@ Outcome run(const CaptureOptions& options) {
   TACTUS_CHECK(check_rate(options, can));
   TACTUS_CHECK(check_force(options.device, can));
   TACTUS_TRY(auto output, OutputFile::create_growing(options.output, options.common.existing(), others));
-  std::unique_ptr<Felt> felt = std::make_unique<FeltNothing>();
-  if (scene) felt = std::make_unique<FeltScene>(*scene, user, options.device.seed, chosen);
+  std::unique_ptr<Rendered> rendered = std::make_unique<RenderedNothing>();
+  if (scene) rendered = std::make_unique<RenderedScene>(*scene, user, options.device.seed, chosen);
   const DevicePlan plan{.path = output.working_path(),
                         .shown_path = options.output,
                         .command = "capture",
@@ -147,7 +147,7 @@ Outcome run(const CaptureOptions& options) {
                         .remarks = options.remarks,
                         .servo = {.rate = rate_of(options, can), .limits = options.device.limits()},
                         .duration = options.duration};
-  DeviceLoop loop(plan, *chosen.device, *felt);
+  DeviceLoop loop(plan, *chosen.device, *rendered);
   const Outcome worked = run_attended(loop, options.common);
   const DeviceRun run{can, loop.outcomes(), options.output, plan.servo.rate};
   if (!worked) {
@@ -233,7 +233,7 @@ tl::unexpected<Failure> refuse_recording(const PlayOptions& options, const Diagn
                           "`tactus info` names those of a trace.");
 }
 
-Value value_of(const PlayOptions& options, const DeviceRun& run, const FeltRecording::Distance& distance) {
+Value value_of(const PlayOptions& options, const DeviceRun& run, const RenderedRecording::Distance& distance) {
   Value out = Json{{"schema", "tactus.play/1"},
                    {"recording", options.trace},
                    {"exerted", name_of(options.exerted)},
@@ -256,14 +256,14 @@ Outcome run(const PlayOptions& options) {
     TACTUS_TRY(auto created, OutputFile::create_growing(options.output, options.common.existing(), others));
     output.emplace(std::move(created));
   }
-  FeltRecording felt(*std::move(recording), options.exerted, options.stiffness);
+  RenderedRecording rendered(*std::move(recording), options.exerted, options.stiffness);
   const DevicePlan plan{.path = output ? output->working_path() : "",
                         .shown_path = options.output,
                         .command = "play",
                         .backend = options.device.backend(),
                         .servo = {.rate = can.rate > 0 ? can.rate : kUsualRate, .limits = options.device.limits()},
                         .duration = options.duration};
-  DeviceLoop loop(plan, *chosen.device, felt);
+  DeviceLoop loop(plan, *chosen.device, rendered);
   const Outcome worked = run_attended(loop, options.common);
   const DeviceRun run{can, loop.outcomes(), options.output, plan.servo.rate};
   if (!worked) {
@@ -271,7 +271,7 @@ Outcome run(const PlayOptions& options) {
     return failed(worked.error(), run);
   }
   if (output) TACTUS_CHECK(output->keep());
-  print(value_of(options, run, felt.distance()), "play", options.common);
+  print(value_of(options, run, rendered.distance()), "play", options.common);
   return check_complete(run);
 }
 
@@ -279,7 +279,7 @@ Outcome run(const PlayOptions& options) {
 
 void setup_play(Command& app, Action& action) {
   auto options = std::make_shared<PlayOptions>();
-  Command& command = app.add_command("play", "Play a recording on a force-feedback device: its path, or the forces that it felt");
+  Command& command = app.add_command("play", "Play a recording on a force-feedback device: its path, or the forces of its hand");
   command.add_option("TRACE", options->trace, "The recording (MCAP)")->type_name("")->required();
   command.add_option("--user", options->user, "Whose hand, if there are several [the first]")->type_name("NAME");
   add_device_options(command, options->device);
@@ -289,7 +289,7 @@ void setup_play(Command& app, Action& action) {
           [&exerted = options->exerted](const std::string& name) {
             exerted = name == "path" ? Exerted::path : name == "force" ? Exerted::force : Exerted::nothing;
           },
-          "What the device does: nothing, path (a spring draws the hand along), or force (what that hand felt) [nothing]")
+          "What the device does: nothing, path (a spring draws the hand along), or force (as rendered to that hand) [nothing]")
       ->one_of({"nothing", "path", "force"})
       ->type_name("WHAT");
   command.add_option("--stiffness", options->stiffness, "Of the spring, in newtons per metre")
@@ -305,7 +305,7 @@ void setup_play(Command& app, Action& action) {
       "Nothing is exerted without --exert. The recording begins where the handle is; q ends it. Recorded forces are right only\n"
       "where the hand was: hold the handle, and begin with a small --force-limit.\n"
       "Examples:\n  tactus play hand.mcap --device falcon --exert path --pace 0.5\n"
-      "  tactus play hand.mcap --device openhaptics --exert force --force-limit 1N -o felt.mcap");
+      "  tactus play hand.mcap --device openhaptics --exert force --force-limit 1N -o played.mcap");
   on_chosen<PlayOptions>(command, action, options, run);
 }
 

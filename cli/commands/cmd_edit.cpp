@@ -79,7 +79,7 @@ Outcome run(const CutOptions& options) {
   TACTUS_CHECK(copy(*reader, *writer, options, report));
   if (report.ticks.count() == 0)
     return refuse(shown_path(options.input) + ": no tick lies between --from and --to",
-                  "`tactus info` tells its first and last.");
+                  "`tactus info` shows its first and last.");
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   TACTUS_CHECK(output.keep());
   report.describe(info);
@@ -248,7 +248,7 @@ void setup_merge(Command& app, Action& action) {
       ->type_name("FILE");
   add_output_options(command, options->common);
   command.footer(
-      "Names that occur twice get numbers, ticks that are not in all traces are left out; warnings tell. Scenes and bounds\n"
+      "Names that occur twice get numbers, ticks that are not in all traces are left out; warnings say so. Scenes and bounds\n"
       "are not carried over.\n"
       "Example:\n  tactus merge objects.mcap hand.mcap -o all.mcap");
   on_chosen<MergeOptions>(command, action, options, run);

@@ -56,7 +56,7 @@ void setup_export(Command& app, Action& action) {
   command.add_option("-o,--output", options->output, "CSV to write [standard output]")->type_name("FILE");
   add_output_options(command, options->common);
   command.footer(
-      "A force that the trace does not know has no columns: serve is not told what a hand felt; join, capture and play know\n"
+      "A force that the trace does not know has no columns: serve does not receive the force at a hand; join, capture and play know\n"
       "nothing else.\n"
       "Example:\n  tactus export csv push.mcap -o push.csv");
   on_chosen<ExportOptions>(command, action, options, run);
@@ -166,7 +166,7 @@ void setup_export_foxglove(Command& group, Action& action) {
   command.add_option("-o,--output", options->output, "Recording to write (MCAP), - is standard output")
       ->required()
       ->type_name("FILE");
-  command.add_option("--scene", options->scene, "Scene that tells the shapes of the objects [that in the trace]")
+  command.add_option("--scene", options->scene, "Scene with the shapes of the objects [that in the trace]")
       ->type_name("NAME|FILE");
   command.add_option("--rate", options->foxglove.rate, "Frames per second of the recording, at most [60]")
       ->check(number(1e-3, 1e5))
@@ -180,9 +180,9 @@ void setup_export_foxglove(Command& group, Action& action) {
       ->check(above_zero(Dimension::length));
   add_output_options(command, options->common);
   command.footer(
-      "It holds the surfaces of rigid and deformable objects (their colour tells the displacement), each user's device (black), "
+      "It holds the surfaces of rigid and deformable objects (their colour is the displacement), each user's device (black), "
       "the point\n"
-      "that it touches (green), the force felt (orange) and that of the server (blue), as far as they are known, and what plots\n"
+      "that it touches (green), the rendered force (orange) and that of the server (blue), as far as they are known, and what plots\n"
       "need of them. Import the layout in the viewer, which otherwise shows no topic of the scene at first.\n"
       "Examples:\n"
       "  tactus export foxglove membrane.mcap -o membrane-3d.mcap --layout membrane.json\n"

@@ -288,7 +288,7 @@ Outcome run(const ImportOptions& options) {
   }
   report.ticks = imported->ticks;
   report.segments = imported->segments;
-  tell(imported->notes.all(), options.input, report);
+  report_notes(imported->notes.all(), options.input, report);
   if (imported->angular_velocity.is_off()) {
     report.warnings.push_back(contradiction(imported->angular_velocity, mapping.angular_velocity_frame));
     fmt::print(stderr, "warning: {}: {}\n", shown_path(options.input), report.warnings.back());
@@ -314,7 +314,7 @@ void add_text_options(Command& command, ImportOptions& options) {
       ->type_name("UNIT");
   command
       .add_option("--quaternion-order", options.quaternion_order,
-                  "Order in which the columns of a rotation are listed [as they are called, or as the first one tells]")
+                  "Order in which the columns of a rotation are listed [as they are called, or as the first one shows]")
       ->one_of({"wxyz", "xyzw"})
       ->type_name("ORDER");
   command.add_option("--date-order", options.date_order, "Which number of 05/06/2024 is the month [asked for where it matters]")
@@ -408,7 +408,7 @@ void setup_import(Command& app, Action& action) {
       "names (t_ms,\n"
       "'x [mm]', yaw_deg). Segments are joined without a gap. A pause inside a segment is kept: its ticks are missing, but its "
       "time counts.\n"
-      "What was decided where a table leaves it open is told in notes.");
+      "What was decided where a table leaves it open is reported in notes.");
   command.on_chosen([&action, options, list, input, output] {
     if (list->count() == 0 && input->count() == 0) miss_option("FILE");
     if (list->count() == 0 && output->count() == 0) miss_option("--output");

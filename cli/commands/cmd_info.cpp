@@ -156,7 +156,7 @@ class UnboundForces {
       users_[i].has_contact = users_[i].has_contact || user.contact.kind != ContactKind::none || user.surface_contact;
     }
   }
-  void tell(Json& out) const {
+  void write_to(Json& out) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < users_.size(); ++i)
       if (users_[i].has_force && !users_[i].has_contact) names.push_back(info_.users[i].name);
@@ -205,7 +205,7 @@ Outcome info_trace(const InfoOptions& options) {
   TACTUS_TRY(const TickTotals ticks, read_ticks(*reader, options, unbound));
   Value info = trace_info_value(trace, {ticks.frames, ticks.first, ticks.last, !reader->cut_short(), ticks.shapes});
   info.json["channels"] = topics_json(reader->topics());
-  unbound.tell(info.json);
+  unbound.write_to(info.json);
   if (const auto notes = texts_of(reader->notes()); !notes.empty()) info.json["notes"] = notes;
   print(info, "info", options.common);
   return check_ending(options.input, *reader, ticks.frames);

@@ -162,14 +162,14 @@ void setup_join(Command& app, Action& action) {
       ->type_name("SCENE");
   command.add_option("--user", options->user, "The user of the scene whose hand it is [the first]")->type_name("NAME");
   add_device_options(command, options->device);
-  command.add_option("-o,--output", options->output, "Also write a trace of what is shown and felt, on the server's time (MCAP)")
+  command.add_option("-o,--output", options->output, "Also write a trace of what is shown and rendered, on the server's time (MCAP)")
       ->type_name("FILE");
   add_quantity(command, "--duration", options->duration, Dimension::time,
                "End after this long [until Ctrl-C or the server's end]");
   add_key(command, options->key);
   add_playout(command, options->playout);
   add_quantity(command, "--device-error", options->device_error, Dimension::length,
-               "Largest error of the device's position that the server is told [0.1mm]")
+               "Largest error of the device's position that is sent to the server [0.1mm]")
       ->check(within(Dimension::length, "10um", "1m"));
   add_quantity(command, "--device-deadband", options->weber_fraction, Dimension::fraction,
                "In contact, largest error of the normal force that this error causes [4%]")
@@ -177,7 +177,7 @@ void setup_join(Command& app, Action& action) {
   add_limits(command, options->limits, "Largest scene that this end takes [see below]; may be repeated");
   add_output_options(command, options->common);
   command.footer(std::string(limits_help()) +
-                 "\n\nExample:\n  tactus join 7447 --scene rotate-push-lift -o felt.mcap\n"
+                 "\n\nExample:\n  tactus join 7447 --scene rotate-push-lift -o client.mcap\n"
                  "From another machine:\n  tactus join 192.0.2.1:7447 --key lab.key --scene rotate-push-lift");
   on_chosen<JoinOptions>(command, action, options, run);
 }

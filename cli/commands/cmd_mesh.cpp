@@ -118,9 +118,9 @@ Outcome fill_surface(const MeshOptions& options, TetMeshReport& report) {
   const sim::SurfaceOptions how{.drop_degenerate = options.drop_degenerate, .axes = axes_of(options.axes), .node = options.node};
   auto file = report.measure("read", [&] { return sim::read_surface(options.input, how); });
   if (!file) return refuse(file.error());
-  Report told;
-  tell(file->notes.all(), options.input, told);
-  report.warnings = std::move(told.notes);
+  Report reader_notes;
+  report_notes(file->notes.all(), options.input, reader_notes);
+  report.warnings = std::move(reader_notes.notes);
   if (file->dropped_faces > 0) report.notes.emplace_back("dropped_faces", file->dropped_faces);
   if (file->polygons > 0) report.notes.emplace_back("cut_polygons", file->polygons);
   if (file->unused_vertices > 0) report.notes.emplace_back("unused_vertices", file->unused_vertices);

@@ -149,7 +149,7 @@ Outcome run(const ImportMeshOptions& options) {
   if (!writer) return refuse(options.output, writer.error());
   Report report{.command = "import mesh", .files = {{"frames", options.input}, {"trace", options.output}}};
   report.timings = {{"read"}};
-  tell(sequence->notes(), options.input, report);
+  report_notes(sequence->notes(), options.input, report);
   TACTUS_CHECK(write_frames(*sequence, rest, options, clock, *writer, report));
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   report.describe(info);

@@ -145,7 +145,7 @@ Outcome recover_trace(const RecoverOptions& options, TraceReader& reader) {
   Report report{.command = "recover", .files = {{"trace", options.input}, {"recovered", options.output}}};
   report.timings = {{"read"}};
   TACTUS_TRY(const Rescue rescue, copy(reader, *writer, options, report));
-  tell(reader.notes(), options.input, report);
+  report_notes(reader.notes(), options.input, report);
   const std::vector<ReadLoss>& losses = reader.losses();
   if (report.ticks.count() == 0) {
     if (rescue.damage) return refuse(options.input, *rescue.damage);
@@ -243,11 +243,11 @@ Outcome recover_recording(const RecoverOptions& options, mcap::Reader& reader) {
   if (output.is_temporary()) TACTUS_CHECK(read_messages_back(output.working_path(), options, copied.messages));
   TACTUS_CHECK(output.keep());
   Report report{.command = "recover", .files = {{"recording", options.input}, {"recovered", options.output}}};
-  tell(reader.notes().all(), options.input, report);
+  report_notes(reader.notes().all(), options.input, report);
   report.warnings.push_back(fmt::format("{} of {} recovered, as another program wrote them", counted(copied.messages, "message"),
                                         counted(reader.channels().size(), "topic")));
   if (const auto announced = reader.files().announced_messages; announced && *announced != copied.messages)
-    report.warnings.push_back(fmt::format("metadata.yaml tells of {} messages", *announced));
+    report.warnings.push_back(fmt::format("metadata.yaml lists {} messages", *announced));
   add_losses(losses, report);
   if (reader.cut_short())
     report.warnings.push_back("the recording ends without its index" +

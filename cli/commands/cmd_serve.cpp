@@ -144,7 +144,7 @@ struct Recording {
 TraceInfo info_of(const sim::Server& world) {
   TraceInfo out = world.info();
   out.source = "serve " + world.scene().name;
-  for (TraceUser& user : out.users) user.forces = KnownForces::server;  // clients tell none
+  for (TraceUser& user : out.users) user.forces = KnownForces::server;  // clients send none
   return out;
 }
 
@@ -170,7 +170,7 @@ tl::expected<std::unique_ptr<Observation>, Failure> make_observation(const Serve
                               .like = &world.frame()});
 }
 
-/// Tells of what this machine did not manage: ticks in time, datagrams that waited.
+/// Reports what this machine did not manage: ticks in time, datagrams that waited.
 class Strain {
  public:
   explicit Strain(const EventLog& log) : log_(log) {}
@@ -180,8 +180,8 @@ class Strain {
     if (now < looked_at_ + kEvery) return;
     const std::uint64_t ticks = ticker.ticks() + ticker.missed() - ticks_, missed = ticker.missed() - missed_;
     const std::uint64_t dropped = socket.dropped() - dropped_;
-    if (looked_at_ > 0 && 100 * missed > ticks) tell_missed(now, missed, ticks);
-    if (looked_at_ > 0 && dropped > 0) tell_dropped(now, dropped);
+    if (looked_at_ > 0 && 100 * missed > ticks) log_missed(now, missed, ticks);
+    if (looked_at_ > 0 && dropped > 0) log_dropped(now, dropped);
     looked_at_ = now;
     ticks_ += ticks;
     missed_ += missed;
@@ -190,17 +190,17 @@ class Strain {
 
  private:
   /// If more than one in a hundred were.
-  void tell_missed(std::uint64_t now, std::uint64_t missed, std::uint64_t ticks) const {
-    log_.tell(now, "missed_ticks",
+  void log_missed(std::uint64_t now, std::uint64_t missed, std::uint64_t ticks) const {
+    log_.write(now, "missed_ticks",
               fmt::format("missed {} of {} ticks in {:.0f} s: this machine has no time for them. Serve fewer clients, end other "
-                          "programs, or allow real-time priority (`tactus serve --check` tells how)",
+                          "programs, or allow real-time priority (`tactus serve --check` says how)",
                           missed, ticks, 1e-6 * static_cast<double>(now - looked_at_)),
               {{"missed", missed}, {"of", ticks}});
   }
-  void tell_dropped(std::uint64_t now, std::uint64_t dropped) const {
-    log_.tell(now, "dropped",
+  void log_dropped(std::uint64_t now, std::uint64_t dropped) const {
+    log_.write(now, "dropped",
               fmt::format("the system dropped {} that waited for this program: more came than there was room for "
-                          "(`tactus serve --check` tells how much there is)",
+                          "(`tactus serve --check` says how much there is)",
                           counted(dropped, "datagram")),
               {{"datagrams", dropped}});
   }
@@ -362,7 +362,7 @@ void setup_serve(Command& app, Action& action) {
   add_key(command, options->key);
   command
       .add_option("-o,--output", options->output,
-                  "Also write a trace (MCAP); its forces are the server's, as clients do not tell what is felt")
+                  "Also write a trace (MCAP); its forces are the server's, as clients do not send the rendered ones")
       ->type_name("FILE");
   command.add_option("--clients", options->clients, "Most clients at a time")
       ->check(whole_number(1, 1024))
@@ -377,11 +377,11 @@ void setup_serve(Command& app, Action& action) {
   command
       .add_option(
           "--metrics", [options](const std::string& port) { options->metrics = static_cast<std::uint32_t>(std::stoul(port)); },
-          "Also tell figures at http://127.0.0.1:PORT/metrics (Prometheus) and health at /health; 0: any free one")
+          "Also serve figures at http://127.0.0.1:PORT/metrics (Prometheus) and health at /health; 0: any free one")
       ->check(whole_number(0, 65535))
       ->type_name("PORT");
   command.add_flag("--check", options->check,
-                   "Only look whether this would do: scene, keys, port; tell sizes and what this system permits");
+                   "Only look whether this would do: scene, keys, port; print sizes and what this system permits");
   add_limits(command, options->limits, "Largest scene that is served [see below]; may be repeated");
   add_bit_rate(command, "--rate", options->rate, "Most that each client is sent, headers included [no limit]");
   add_quantity(command, "--duration", options->duration, Dimension::time, "End after this long [until Ctrl-C]");

@@ -186,7 +186,7 @@ tl::expected<sim::SimulationOptions, Failure> settings_of(const SimOptions& opti
                              .estimate_every = kEstimateEvery};
   if (options.has_channel())
     out.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica,
-                                      options.meshes.coding(options.triggers), options.told};
+                                      options.meshes.coding(options.triggers), options.client_model_scale};
   if (!options.has_network()) return out;
   out.channel->timed = true;
   TACTUS_CHECK(add_network(options, scene, networked, *out.channel));
@@ -261,7 +261,7 @@ Outcome check_options(const SimOptions& options) {
                             fmt::format("Give at most {:.0f}s.", std::floor(kMostTicks / sim::kTickRate)));
   if (!options.pcap.empty() && !options.has_network())
     return refuse_arguments("--pcap: without a network there are no datagrams", "Give a network with --link.");
-  for (const auto& [name, why] : {std::pair{"--playout", "nothing is late"}, {"--told", "nobody is told anything"}})
+  for (const auto& [name, why] : {std::pair{"--playout", "nothing is late"}, {"--client-model-scale", "there are no clients whose models it could scale"}})
     if (!options.has_network() && options.common.command->find(name)->count() > 0)
       return refuse_arguments(fmt::format("{}: without a network {}", name, why), "Give --link or --uplink, or leave it out.");
   return {};
@@ -387,7 +387,7 @@ void setup_sim(Command& app, Action& action) {
                   "Also write the local stiffness of deformable objects (CSV, and a figure beside it)")
       ->type_name("FILE");
   command.add_flag("--check", options->check,
-                   "Simulate the same again beside it with half the step, and with a shape in each tick, and tell the difference "
+                   "Simulate the same again beside it with half the step, and with a shape in each tick, and report the difference "
                    "in motion, shapes, forces, energies and the work of hands [costs two to four times the time]");
   command.add_flag("--codec", options->codec,
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
@@ -399,7 +399,7 @@ void setup_sim(Command& app, Action& action) {
   add_link(command, "--uplink", options->uplink, "Network from the clients to the server, if it differs");
   add_playout(command, options->playout);
   add_compensation(command, options->compensation);
-  add_told(command, options->told);
+  add_client_model_scale(command, options->client_model_scale);
 #ifdef TACTUS_HAS_NET
   command
       .add_option("--pcap", options->pcap,
@@ -413,7 +413,7 @@ void setup_sim(Command& app, Action& action) {
       "Examples:\n"
       "  tactus sim push-1dof -o push.mcap --seed 7\n"
       "  tactus sim membrane -o membrane.mcap --rate 1\n"
-      "  tactus sim rotate-push-lift -o felt.mcap --stream felt.tct -p 4% --profile thesis --interpolate\n"
+      "  tactus sim rotate-push-lift -o push.mcap --stream push.tct -p 4% --profile thesis --interpolate\n"
       "  tactus sim rotate-push-lift -o far.mcap -p 4% --link delay=20ms,jitter=5ms,loss=1%\n"
       "\n" +
       std::string(link_help()));

@@ -53,15 +53,15 @@ Value value_of(const TolerableOptions& options, const TraceInfo& info, const Del
     limit("tolerable_p5_s", 0.05);
     limit("tolerable_p50_s", 0.5);
     for (std::size_t i = 0; i < DelayTolerance::kRoundTrips.size(); ++i)
-      entry["felt"].push_back({{"round_trip_s", DelayTolerance::kRoundTrips[i]}, {"fraction", touch.felt(i)}});
+      entry["perceptible"].push_back({{"round_trip_s", DelayTolerance::kRoundTrips[i]}, {"fraction", touch.perceptible(i)}});
     out["touches"].push_back(std::move(entry));
   }
   if (!is_scene && !info.meshes.empty())
-    out["notes"] = {"A deformable object gives way and bears more than that; give its scene to see how much."};
+    out["notes"] = {"A deformable object gives way and tolerates more than that; give its scene to see how much."};
   return out;
 }
 
-/// Over the round trip, how much of the time in contact it is felt: a line for each touch.
+/// Over the round trip, in how much of the time in contact it is perceptible: a line for each touch.
 Figure fraction_figure(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance) {
   constexpr int kSteps = 100;
   Panel panel{"fraction of the time in contact [%]"};
@@ -76,7 +76,7 @@ Figure fraction_figure(const TolerableOptions& options, const TraceInfo& info, c
       line.points.push_back({1e3 * *most, pressing * step / kSteps});
     }
   }
-  return {.heading = fmt::format("{}: round trips that are felt as {:g} % more force", options.input, 100 * options.weber),
+  return {.heading = fmt::format("{}: round trips perceived as {:g} % more force", options.input, 100 * options.weber),
           .panels = {std::move(panel)},
           .x_label = "round trip [ms]",
           .logarithmic_x = true};
@@ -138,12 +138,12 @@ Outcome run(const TolerableOptions& options) {
 void setup_tolerable(Command& app, Action& action) {
   auto options = std::make_shared<TolerableOptions>();
   Command& command =
-      app.add_command("tolerable", "Tell how much delay the touches of a recording or a scene bear until it is felt");
+      app.add_command("tolerable", "Compute how much delay the touches of a recording or a scene tolerate until it is perceptible");
   command
       .add_option("TRACE", options->input, "Recording with contacts (MCAP), - is standard input; or a scene, which is simulated")
       ->type_name("")
       ->required();
-  add_quantity(command, "-c,--weber-fraction", options->weber, Dimension::fraction, "Change of the force that is just felt [10%]")
+  add_quantity(command, "-c,--weber-fraction", options->weber, Dimension::fraction, "Change of the force that is just noticeable [10%]")
       ->check(above_zero(Dimension::fraction));
 #ifdef TACTUS_HAS_SIM
   command.add_option("--seed", options->seed, "Of the hands of a scene")
@@ -151,13 +151,13 @@ void setup_tolerable(Command& app, Action& action) {
       ->show_default()
       ->type_name("N");
 #endif
-  add_plot_option(command, options->plot, "the fraction of the time in contact over the round trip that is felt");
+  add_plot_option(command, options->plot, "the fraction of the time in contact in which a round trip is perceptible");
   add_output_options(command, options->common);
   command.footer(
       "A client learns of an object's motion a round trip late. Meanwhile a hand that presses goes further into what the client\n"
       "shows, and feels more than at the server (thesis eqs. 4.17 to 4.20, 4.31). What is deformable follows only a fraction of "
       "the\n"
-      "device's way, and bears as much more; a recording does not tell which fraction (eq. 4.54).\n"
+      "device's way, and tolerates as much more; a recording does not tell which fraction (eq. 4.54).\n"
       "Examples:\n  tactus sim push-1dof -o push.mcap && tactus tolerable push.mcap\n  tactus tolerable membrane");
   on_chosen<TolerableOptions>(command, action, options, run);
 }

@@ -174,7 +174,7 @@ void setup_view(Command& app, Action& action) {
                   "Trace that the stream was encoded from: a ghost, forces and errors beside the stream")
       ->type_name("TRACE");
 #ifdef TACTUS_HAS_SIM
-  command.add_option("--scene", options->scene, "Scene that tells the shapes of the objects [the one in the truth, boxes only]")
+  command.add_option("--scene", options->scene, "Scene with the shapes of the objects [the one in the truth, boxes only]")
       ->type_name("SCENE");
 #endif
   command.add_option("-o,--output", options->output, "Page to write (HTML), - is standard output [STREAM with .html]")
@@ -183,7 +183,7 @@ void setup_view(Command& app, Action& action) {
   command.footer(
       "The page is one file that needs no network; open it in a browser with WebGL 2. Keys and colours are explained in it. A "
       "link that\n"
-      "ends in #t=3.25 opens it at 3.25 s. Errors are those of `tactus compare`. A stream tells where objects are, not what they "
+      "ends in #t=3.25 opens it at 3.25 s. Errors are those of `tactus compare`. A stream holds where objects are, not what they "
       "look like:\n"
       "without a truth or a scene they are drawn as axes.\n"
       "Example:\n  tactus view push.tct --truth push.mcap -o push.html");

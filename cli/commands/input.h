@@ -50,7 +50,7 @@ inline tl::expected<TraceReader, Failure> open_trace(const std::string& path, Vi
 /// Read the next frame, as TraceReader::next().   err  the same, with chunk, topic and time
 tl::expected<bool, Failure> next_frame(TraceReader& reader, TraceFrame& frame, const std::string& path);
 
-/// How far a trace has been read: by its frames where it tells their number, else by its bytes, where they are known.
+/// How far a trace has been read: by its frames where it states their number, else by its bytes, where they are known.
 class ReadProgress {
  public:
   /// in  reader  null: a stream   pre  it outlives this and is not moved
@@ -91,7 +91,7 @@ Outcome check_plausible_length(const std::string& path, std::span<const std::uin
 /// A stream that ends inside a record is decoded up to there, as a trace that was cut.
 bool is_cut_stream(const Error& error);
 
-/// A packet of a stream, as far as figures tell of it.
+/// A packet of a stream, as far as figures show it.
 struct SourcePacket {
   std::int64_t tick = 0;
   std::size_t bytes = 0;

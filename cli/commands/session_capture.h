@@ -31,7 +31,7 @@ class SessionCapture {
   /// err  as OutputFile::create; the file cannot be written
   static tl::expected<std::unique_ptr<SessionCapture>, Failure> create(const std::string& path, OutputFile::Existing existing,
                                                                        std::initializer_list<std::string> others, End end);
-  /// To be told of every datagram.   post  the capture outlives it
+  /// To be called for every datagram.   post  the capture outlives it
   std::function<void(const sim::Sighting&)> observer();
   /// err  a datagram could not be written
   Outcome keep();

@@ -33,7 +33,7 @@ struct SimOptions {
   double mesh_noise = 0;  // [m] RMS per axis
   bool codec = false, check = false;
   std::string compensation;  // empty: the scene's
-  double told = 1;           // of what devices move, times the true
+  double client_model_scale = 1;           // mass and stiffness of what devices move, times the true
   TriggerArguments triggers;
   MeshArguments meshes;
   ReplicaOptions replica;

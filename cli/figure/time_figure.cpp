@@ -106,7 +106,7 @@ void MotionFigure::add(ObjectLines& lines, const RigidSample& sample, double tim
 void MotionFigure::add(UserLines& lines, const UserSample& user, double time) {
   const auto parts = components(user.device.position);
   for (std::size_t k = 0; k < parts.size(); ++k) lines.device[k].add(time, kMillimetres * parts[k]);
-  lines.felt.add(time, norm(user.force));
+  lines.rendered.add(time, norm(user.force));
   lines.server.add(time, norm(user.server_force));
   lines.differ = lines.differ || user.force != user.server_force;
 }
@@ -118,9 +118,9 @@ void MotionFigure::add_packet(std::int64_t tick, std::size_t bytes) {
 
 std::vector<Panel::Line> MotionFigure::force_lines(const UserLines& of, KnownForces known) {
   if (known == KnownForces::server) return {{"of the server", of.server.points()}};
-  if (known == KnownForces::felt) return {{"felt", of.felt.points()}};
-  if (!of.differ) return {{"force", of.felt.points()}};
-  return {{"felt", of.felt.points()}, {"of the server", of.server.points()}};
+  if (known == KnownForces::rendered) return {{"rendered", of.rendered.points()}};
+  if (!of.differ) return {{"force", of.rendered.points()}};
+  return {{"rendered", of.rendered.points()}, {"of the server", of.server.points()}};
 }
 
 std::vector<Panel> MotionFigure::panels() const {

@@ -74,8 +74,8 @@ class MotionFigure {
   };
   struct UserLines {
     std::array<TimeLine, 3> device{};
-    TimeLine felt{}, server{};
-    bool differ = false;  // felt and server
+    TimeLine rendered{}, server{};
+    bool differ = false;  // rendered and server
   };
 
   double time_of(std::int64_t tick) const { return static_cast<double>(tick) / info_.tick_rate; }

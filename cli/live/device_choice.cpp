@@ -65,12 +65,12 @@ Result<device::Reading> VirtualDevice::read(device::Time deadline) noexcept {
   if (begin_ < 0) begin_ = deadline - kMillisecond;
   const std::int64_t due = (deadline - begin_) / kMillisecond;
   ticks_ = std::max(ticks_, due - kMostSteps);
-  for (; ticks_ < due; ++ticks_) sample_ = hand_.step(is_halted_ ? Vec3{} : felt_, watched_);
+  for (; ticks_ < due; ++ticks_) sample_ = hand_.step(is_halted_ ? Vec3{} : force_, watched_);
   return device::Reading{.sample = sample_, .taken = begin_ + ticks_ * kMillisecond};
 }
 
 Result<void> VirtualDevice::write(const device::GuardedForce& force) noexcept {
-  felt_ = force.value();
+  force_ = force.value();
   is_halted_ = false;
   return {};
 }

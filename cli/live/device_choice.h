@@ -40,7 +40,7 @@ class VirtualDevice final : public device::Device {
   sim::Hand hand_;
   Pose watched_;
   DeviceSample sample_;
-  Vec3 felt_{};
+  Vec3 force_{};
   device::Time begin_ = -1;
   std::int64_t ticks_ = 0;
   std::atomic<bool> is_halted_{false};

@@ -88,8 +88,8 @@ tl::unexpected<Failure> DeviceLoop::device_failed(const Error& error) const {
 
 TraceInfo DeviceLoop::describe() const {
   const device::Capabilities& can = device_.capabilities();
-  TraceInfo info = felt_.info();
-  TraceUser& user = info.users[felt_.user()];
+  TraceInfo info = rendered_.info();
+  TraceUser& user = info.users[rendered_.user()];
   user.senses = can.senses;
   user.senses.time = true;
   user.has_servo = true;
@@ -106,11 +106,11 @@ TraceInfo DeviceLoop::describe() const {
 }
 
 Outcome DeviceLoop::set_up() {
-  TACTUS_CHECK(felt_.begin());
+  TACTUS_CHECK(rendered_.begin());
   const TraceInfo info = describe();
   frame_.objects.resize(info.objects.size());
   frame_.users.resize(info.users.size());
-  if (device_.reports() != nullptr) reserve(frame_.users[felt_.user()].reports);
+  if (device_.reports() != nullptr) reserve(frame_.users[rendered_.user()].reports);
   for (const TraceDeformable& mesh : info.meshes)
     frame_.meshes.push_back({false, std::vector<float>(3 * mesh.rest.vertices.size())});
   if (plan_.path.empty()) return {};
@@ -152,18 +152,18 @@ Outcome DeviceLoop::go_on(Servo& servo) {
     if (!next) return device_failed(next.error());
     if (next->reading.state == Reading::State::ended || static_cast<double>(next->number) >= most) return {};
     TACTUS_CHECK(tick(servo, *next));
-    if (felt_.is_over()) return {};
-    if (recorder_ && recorder_->status().error) return {};  // finish() tells it
+    if (rendered_.is_over()) return {};
+    if (recorder_ && recorder_->status().error) return {};  // finish() reports it
   }
   return {};
 }
 
 Outcome DeviceLoop::tick(Servo& servo, const ServoTick& tick) {
-  const auto force = felt_.step(tick, frame_);
+  const auto force = rendered_.step(tick, frame_);
   if (!force) return tl::unexpected(force.error());
   if (const auto exerted = servo.exert(*force); !exerted) return device_failed(exerted.error());
   const device::ForceGuard* guard = servo.guard();
-  UserSample& user = frame_.users[felt_.user()];
+  UserSample& user = frame_.users[rendered_.user()];
   user.force = guard != nullptr ? guard->written() : Vec3{};
   user.device.time = tick.reading.taken;
   user.servo = {tick.lateness, tick.age, tick.missed, guard != nullptr ? guard->actions() : 0U};
@@ -188,7 +188,7 @@ void DeviceLoop::publish(const ServoTick& tick) noexcept {
   ticks_.store(outcomes_.ticks, kRelaxed);
   missed_.store(outcomes_.missed, kRelaxed);
   lost_.store(outcomes_.device_lost, kRelaxed);
-  force_.store(norm(frame_.users[felt_.user()].force), kRelaxed);
+  force_.store(norm(frame_.users[rendered_.user()].force), kRelaxed);
   if (tick.lateness > worst_.load(kRelaxed)) worst_.store(tick.lateness, kRelaxed);
   state_.store(tick.reading.state, kRelaxed);
 }

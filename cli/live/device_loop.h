@@ -15,7 +15,7 @@
 #include <tactus/device/real_time.h>
 #include <tactus/device/servo.h>
 #include <tactus/trace/trace_recorder.h>
-#include "cli/live/felt.h"
+#include "cli/live/rendered.h"
 #include "cli/options/options_codec.h"
 #include "cli/report/messages.h"
 
@@ -69,7 +69,7 @@ struct DevicePlan {
 
 class DeviceLoop {
  public:
-  DeviceLoop(const DevicePlan& plan, device::Device& device, Felt& felt) : plan_(plan), device_(device), felt_(felt) {}
+  DeviceLoop(const DevicePlan& plan, device::Device& device, Rendered& rendered) : plan_(plan), device_(device), rendered_(rendered) {}
 
   /// On a thread of its own; ODE and real-time scheduling belong to it.
   Outcome run();
@@ -110,7 +110,7 @@ class DeviceLoop {
 
   const DevicePlan& plan_;
   device::Device& device_;
-  Felt& felt_;
+  Rendered& rendered_;
   std::optional<TraceRecorder> recorder_;
   std::atomic<TraceRecorder*> shared_recorder_{nullptr};
   TraceFrame frame_;
@@ -125,7 +125,7 @@ class DeviceLoop {
 };
 
 // ==== device report ====
-// What a person sees while a device runs and afterwards, whatever its hand felt.
+// What a person sees while a device runs and afterwards, whatever was rendered.
 
 /// Run the loop on a thread of its own until it ends. Keys become markers, q and a signal end it, and a meter shows how it goes.
 Outcome run_attended(DeviceLoop& loop, const CommonOptions& common);

@@ -9,7 +9,7 @@
 
 namespace tactus::cli {
 
-void EventLog::tell(std::uint64_t now, const char* event, const std::string& text, Json fields) const {
+void EventLog::write(std::uint64_t now, const char* event, const std::string& text, Json fields) const {
   if (form_ == Form::none) return;
   const double seconds = 1e-6 * static_cast<double>(now - origin_);
   if (form_ == Form::text) {

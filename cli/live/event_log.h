@@ -12,11 +12,11 @@ namespace tactus::cli {
 class EventLog {
  public:
   enum class Form : std::uint8_t { none, text, json };
-  /// in   origin  [us] of the times that the lines tell
+  /// in   origin  [us] of the times in the lines
   EventLog(Form form, std::uint64_t origin) noexcept : form_(form), origin_(origin) {}
 
   /// "   12.345 s  TEXT", or {"time_s": 12.345, "event": EVENT, fields}.   in  event  one word
-  void tell(std::uint64_t now, const char* event, const std::string& text, Json fields = Json::object()) const;
+  void write(std::uint64_t now, const char* event, const std::string& text, Json fields = Json::object()) const;
 
  private:
   Form form_;

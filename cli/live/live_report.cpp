@@ -96,7 +96,7 @@ std::string size_text(std::uint64_t bytes) {
 }
 
 std::string remedy_of_silence(const NoSession& join) {
-  if (join.is_refused) return "Start `tactus serve` there, or give the port that it tells when it starts.";
+  if (join.is_refused) return "Start `tactus serve` there, or give the port that it prints when it starts.";
   if (join.received > 0) return "Check the network between the two, and whether the server still runs.";
   return std::string("Is `tactus serve` running there, and does the network let UDP to this port pass?") +
          (join.has_key ? "" : " If it has a key, this end needs it too: --key.");

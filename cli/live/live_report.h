@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What programs that take part in a session tell at their end.
+/// What programs that take part in a session report at their end.
 #pragma once
 
 #include <optional>

@@ -140,7 +140,7 @@ void add_traffic(Exposition& out, const ServerFigures& figures, const ServerFact
   add_layers(out, facts, sum.datagrams_heard, sum.bytes_heard, sum.payload_heard);
   out.one("tactus_datagrams_sent_total", "counter", "Datagrams sent in sessions.", sum.datagrams_sent);
   out.one("tactus_datagrams_received_total", "counter", "Datagrams heard in sessions.", sum.datagrams_heard);
-  out.one("tactus_datagrams_lost_total", "counter", "Datagrams sent that were lost, as far as clients told.", sum.lost);
+  out.one("tactus_datagrams_lost_total", "counter", "Datagrams sent that were lost, as far as clients reported.", sum.lost);
   out.one("tactus_datagrams_refused_total", "counter", "Datagrams that belong to no session or break its rules.",
           figures.datagrams_refused);
   out.one("tactus_receive_dropped_total", "counter", "Datagrams that the system dropped, as too many waited for this program.",

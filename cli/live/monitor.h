@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a server tells those who watch over it: figures that its loop makes once a second, as text for Prometheus, and whether it is
+/// What a server reports to those who watch over it: figures that its loop makes once a second, as text for Prometheus, and whether it is
 /// healthy. The loop only counts; all texts are made by the thread that asks for them.
 #pragma once
 

@@ -45,17 +45,17 @@ ServiceManager::~ServiceManager() {
   if (socket_ >= 0) ::close(socket_);
 }
 
-void ServiceManager::tell(std::string_view text) const noexcept {
-  if (socket_ >= 0) ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);  // what does not go is not told
+void ServiceManager::send(std::string_view text) const noexcept {
+  if (socket_ >= 0) ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);  // what cannot be sent is left out
 }
 
-void ServiceManager::ready(std::string_view status) const { tell("READY=1\nSTATUS=" + std::string(status)); }
+void ServiceManager::ready(std::string_view status) const { send("READY=1\nSTATUS=" + std::string(status)); }
 
-void ServiceManager::stopping() const noexcept { tell("STOPPING=1"); }
+void ServiceManager::stopping() const noexcept { send("STOPPING=1"); }
 
-void ServiceManager::tell_alive(std::uint64_t now) noexcept {
+void ServiceManager::send_alive(std::uint64_t now) noexcept {
   next_ = now + watchdog_ / 2;
-  tell("WATCHDOG=1");
+  send("WATCHDOG=1");
 }
 
 }  // namespace tactus::cli

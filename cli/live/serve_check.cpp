@@ -17,7 +17,7 @@
 namespace tactus::cli {
 namespace {
 
-/// [bytes] That this program has touched: ends reserve more than they use. 0 where the system does not tell.
+/// [bytes] That this program has touched: ends reserve more than they use. 0 where the system does not report it.
 std::size_t resident() {
   std::ifstream status("/proc/self/status");
   std::size_t kilobytes = 0;

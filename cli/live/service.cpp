@@ -25,7 +25,7 @@ Service::Service(sim::Server& world, SessionServer& sessions, ServerWire& wire, 
       wire_(wire),
       observation_(observation),
       log_(log),
-      told_(sessions.clients()),
+      reported_(sessions.clients()),
       traffic_(sessions.clients()) {
   for (const sim::SceneUser& user : world.scene().users)
     seats_.push_back({.client = {}, .device = {.position = user.start}, .is_lifted = false});
@@ -57,11 +57,11 @@ void Service::end(std::uint64_t peer) {
 void Service::look_at_keys(std::uint64_t now) {
   const auto news = wire_.look_at_keys(now, std::exchange(must_look_, false));
   if (!news) return;
-  log_.tell(now, news->is_refused ? "keys_refused" : "keys", news->text, {{"text", news->text}});
+  log_.write(now, news->is_refused ? "keys_refused" : "keys", news->text, {{"text", news->text}});
   for (std::uint16_t i = 0; i < sessions_.clients(); ++i) {
     const ClientStatus status = sessions_.status(i);
-    told_[i].is_removed = std::ranges::find(news->removed, status.peer) != news->removed.end();
-    if (told_[i].is_removed) sessions_.close(i, LeaveReason::bye);
+    reported_[i].is_removed = std::ranges::find(news->removed, status.peer) != news->removed.end();
+    if (reported_[i].is_removed) sessions_.close(i, LeaveReason::bye);
     else find_user(status);
   }
   say(now);
@@ -70,7 +70,7 @@ void Service::look_at_keys(std::uint64_t now) {
 /// What a client may do is what the user of its address may, whoever it was before.
 void Service::find_user(const ClientStatus& status) {
   if (status.state == SessionState::closed) return;
-  if (auto user = wire_.user_of(status.peer)) told_[status.client].user = std::move(user);
+  if (auto user = wire_.user_of(status.peer)) reported_[status.client].user = std::move(user);
 }
 
 void Service::look_at_floods(std::uint64_t now) {
@@ -79,14 +79,14 @@ void Service::look_at_floods(std::uint64_t now) {
   looked_at_ = now;
   std::uint64_t strangers = wire_.limited() - std::exchange(limited_, wire_.limited());
   for (std::uint16_t i = 0; i < sessions_.clients(); ++i) {
-    const std::uint64_t all = wire_.limited_of(sessions_.status(i).peer), before = std::exchange(told_[i].dropped, all);
+    const std::uint64_t all = wire_.limited_of(sessions_.status(i).peer), before = std::exchange(reported_[i].dropped, all);
     if (all <= before) continue;
     strangers -= std::min(strangers, all - before);
-    tell(i, now, "flood", fmt::format("sends too much: dropped {} of its datagrams in 10 s", all - before),
+    report(i, now, "flood", fmt::format("sends too much: dropped {} of its datagrams in 10 s", all - before),
          {{"dropped", all - before}});
   }
   if (strangers > 0)
-    log_.tell(now, "flood", fmt::format("strangers send too much: dropped {} of their datagrams in 10 s", strangers),
+    log_.write(now, "flood", fmt::format("strangers send too much: dropped {} of their datagrams in 10 s", strangers),
               {{"dropped", strangers}});
 }
 
@@ -98,7 +98,7 @@ void Service::close(std::uint64_t now) {
 
 void Service::say(std::uint64_t now) {
   while (const auto datagram = sessions_.poll_datagram(now)) wire_.send(datagram->peer, datagram->bytes);
-  while (const auto event = sessions_.poll_event()) tell(*event, now);
+  while (const auto event = sessions_.poll_event()) report(*event, now);
 }
 
 std::size_t Service::live() const {
@@ -143,7 +143,7 @@ Outcome Service::make_tick(std::uint64_t now, std::optional<TraceWriter>& trace,
   if (frame.changed) truth.moved = *frame.changed;
   if (const auto sent = sessions_.submit(now, frame.tick, truth); !sent)
     return refuse("session", place_of_tick(frame.tick), sent.error());
-  tell_held(frame.tick, now);
+  log_held(frame.tick, now);
   say(now);
   if (observation_ != nullptr) observation_->offer(frame, truth.loads);
   if (trace)
@@ -165,7 +165,7 @@ void Service::look_after_seats(std::uint64_t now) {
   for (std::uint16_t client = 0; client < sessions_.clients(); ++client) {
     const ClientStatus status = sessions_.status(client);
     if (status.state != SessionState::live) continue;
-    tell_widening(status, now);
+    log_widening(status, now);
     if (status.role == Role::participant && silence_of(client, now) <= kFresh) give_seat(status, now);
   }
 }
@@ -174,12 +174,12 @@ void Service::look_after_seats(std::uint64_t now) {
 /// came.
 void Service::look_after(Seat& seat, std::size_t user, std::uint64_t now) {
   const std::uint64_t silence = silence_of(*seat.client, now);
-  if (!told_[*seat.client].may_touch()) return leave(seat, user, now, "may only look on now");
+  if (!reported_[*seat.client].may_touch()) return leave(seat, user, now, "may only look on now");
   if (sessions_.status(*seat.client).state == SessionState::closed) return leave(seat, user, now, "has left");
   if (silence > kEmpty) return leave(seat, user, now, "was silent for 10 s");
   world_.lift(user, static_cast<double>(kLifted - std::clamp(silence, kFresh, kLifted)) / (kLifted - kFresh));
   if (const bool lifted = silence > kLifted; lifted != std::exchange(seat.is_lifted, lifted))
-    tell(*seat.client, now, lifted ? "lifted" : "returned",
+    report(*seat.client, now, lifted ? "lifted" : "returned",
          lifted ? fmt::format("not heard for 1 s: the hand of {} lifts off", name_of(seat))
                 : fmt::format("heard again: it plays {}", name_of(seat)),
          {{"user", name_of(seat)}});
@@ -187,7 +187,7 @@ void Service::look_after(Seat& seat, std::size_t user, std::uint64_t now) {
 
 void Service::leave(Seat& seat, std::size_t user, std::uint64_t now, const std::string& why) {
   const std::uint16_t client = *seat.client;
-  tell(client, now, "unseated", fmt::format("{}: the seat of {} is free", why, name_of(seat)), {{"user", name_of(seat)}});
+  report(client, now, "unseated", fmt::format("{}: the seat of {} is free", why, name_of(seat)), {{"user", name_of(seat)}});
   sessions_.seat(client, 0);
   seat = {.client = {}, .device = {.position = world_.scene().users[user].start}, .is_lifted = false};
   world_.lift(user, 1);
@@ -202,7 +202,7 @@ Service::Seat* Service::seat_for(const ClientStatus& status, std::uint64_t now) 
   return nobodys == seats_.end() ? nullptr : &*nobodys;
 }
 
-/// What a client has it is told again if its session began anew.
+/// What a client has is sent to it again if its session began anew.
 void Service::give_seat(const ClientStatus& status, std::uint64_t now) {
   const std::uint16_t client = status.client;
   const auto own = std::ranges::find(seats_, client, &Seat::client);
@@ -210,33 +210,33 @@ void Service::give_seat(const ClientStatus& status, std::uint64_t now) {
     if (status.seat != number_of(*own)) sessions_.seat(client, number_of(*own));
     return;
   }
-  if (!told_[client].may_touch()) {
+  if (!reported_[client].may_touch()) {
     if (status.seat != kOnlyLooksOn) sessions_.seat(client, kOnlyLooksOn);
-    if (!std::exchange(told_[client].looks_on, true)) tell(client, now, "looks_on", "looks on: its user may not touch");
+    if (!std::exchange(reported_[client].looks_on, true)) report(client, now, "looks_on", "looks on: its user may not touch");
     return;
   }
   Seat* const seat = seat_for(status, now);
   if (seat == nullptr) {
     if (status.seat == kOnlyLooksOn) sessions_.seat(client, 0);
-    if (std::exchange(told_[client].looks_on, true)) return;
-    tell(client, now, "looks_on",
+    if (std::exchange(reported_[client].looks_on, true)) return;
+    report(client, now, "looks_on",
          status.wanted_seat == 0 ? "looks on: no seat is free"
                                  : fmt::format("looks on: seat {} is taken, or none of the scene", status.wanted_seat));
     return;
   }
   if (seat->client) leave(*seat, number_of(*seat) - 1u, now, "is followed by another client");
   seat->client = client;
-  told_[client].looks_on = false;
+  reported_[client].looks_on = false;
   sessions_.seat(client, number_of(*seat));
-  tell(client, now, "seated", "plays " + name_of(*seat), {{"user", name_of(*seat)}});
+  report(client, now, "seated", "plays " + name_of(*seat), {{"user", name_of(*seat)}});
 }
 
-// What the operator is told
+// What is reported to the operator
 
-void Service::tell(std::uint16_t client, std::uint64_t now, const char* event, const std::string& text, Json fields) {
+void Service::report(std::uint16_t client, std::uint64_t now, const char* event, const std::string& text, Json fields) {
   fields["client"] = client;
-  if (told_[client].user) fields["key"] = told_[client].user->name;
-  log_.tell(now, event, fmt::format("{} {}", name_of(client), text), std::move(fields));
+  if (reported_[client].user) fields["key"] = reported_[client].user->name;
+  log_.write(now, event, fmt::format("{} {}", name_of(client), text), std::move(fields));
 }
 
 /// "client 2", "client 2 (anna)".
@@ -245,36 +245,36 @@ std::string Service::name_of(std::uint16_t client) const {
   return user.empty() ? fmt::format("client {}", client) : fmt::format("client {} ({})", client, user);
 }
 
-void Service::tell(const ServerEvent& event, std::uint64_t now) {
-  if (event.kind == ServerEvent::Kind::refused) return tell_refusal(event.reason, now);
+void Service::report(const ServerEvent& event, std::uint64_t now) {
+  if (event.kind == ServerEvent::Kind::refused) return log_refusal(event.reason, now);
   const ClientStatus status = sessions_.status(event.client);
   switch (event.kind) {
     case ServerEvent::Kind::joined: {
       ++joined_;
-      told_[event.client] = {};
+      reported_[event.client] = {};
       find_user(status);
       const std::string address = wire_.address_of(status.peer),
                         role = status.role == Role::observer ? "observer" : "participant";
-      return tell(event.client, now, "joined", fmt::format("joins from {} as {}", address, role),
+      return report(event.client, now, "joined", fmt::format("joins from {} as {}", address, role),
                   {{"address", address}, {"role", role}});
     }
     case ServerEvent::Kind::live:
-      return tell(event.client, now, "live", "has the scene");
+      return report(event.client, now, "live", "has the scene");
     case ServerEvent::Kind::moved: {
       ++moved_;
       find_user(status);
       const std::string address = wire_.address_of(status.peer);
-      return tell(event.client, now, "moved", "is at " + address + " now", {{"address", address}});
+      return report(event.client, now, "moved", "is at " + address + " now", {{"address", address}});
     }
     case ServerEvent::Kind::left: {
       ++left_;
       traffic_.add(event.client, status.traffic);
       const char* const reason =
-          told_[event.client].is_removed ? "its user is removed, or has another key" : cli::name_of(event.reason);
-      return tell(event.client, now, "left", fmt::format("is gone: {}", reason), {{"reason", reason}});
+          reported_[event.client].is_removed ? "its user is removed, or has another key" : cli::name_of(event.reason);
+      return report(event.client, now, "left", fmt::format("is gone: {}", reason), {{"reason", reason}});
     }
     case ServerEvent::Kind::widened:
-      told_[event.client].widened_at = now;
+      reported_[event.client].widened_at = now;
       return;
     case ServerEvent::Kind::refused:
       return;
@@ -282,29 +282,29 @@ void Service::tell(const ServerEvent& event, std::uint64_t now) {
 }
 
 /// Once a second: a client that is refused may come again at once.
-void Service::tell_refusal(LeaveReason reason, std::uint64_t now) {
+void Service::log_refusal(LeaveReason reason, std::uint64_t now) {
   constexpr std::uint64_t kEvery = 1'000'000;
   const std::uint64_t times = ++refusals_[static_cast<std::size_t>(reason)];
-  if (refusal_told_at_ > 0 && now < refusal_told_at_ + kEvery) return;
-  refusal_told_at_ = now;
+  if (refusal_logged_at_ > 0 && now < refusal_logged_at_ + kEvery) return;
+  refusal_logged_at_ = now;
   const std::string why = reason == LeaveReason::full ? fmt::format("there is room for {} (--clients)", sessions_.clients())
                           : reason == LeaveReason::version
                               ? "it speaks another version"
                               : "the scene is beyond its limits (its --limit: memory or declaration)";
-  log_.tell(now, "refused", fmt::format("a client is refused: {}; {} so far", why, counted(times, "join")),
+  log_.write(now, "refused", fmt::format("a client is refused: {}; {} so far", why, counted(times, "join")),
             {{"reason", cli::name_of(reason)}, {"joins", times}});
 }
 
-void Service::tell_held(std::int64_t tick, std::uint64_t now) {
+void Service::log_held(std::int64_t tick, std::uint64_t now) {
   held_.look(tick, sessions_.held());
   const Scene& scene = *world_.stream_scene();
   const auto fields = [&](const HeldPart& part) {
     return Json{{"object", std::string(tactus::name_of(scene, part))}, {"since_tick", part.since}, {"rule", part.rule}};
   };
   for (const HeldPart& part : held_.begun())
-    log_.tell(now, "held", fmt::format("{}: it is held, the others go on", text_of(scene, part)), fields(part));
+    log_.write(now, "held", fmt::format("{}: it is held, the others go on", text_of(scene, part)), fields(part));
   for (const HeldPart& part : held_.ended())
-    log_.tell(now, "goes-on", fmt::format("{} goes on after tick {}", tactus::name_of(scene, part), part.since), fields(part));
+    log_.write(now, "goes-on", fmt::format("{} goes on after tick {}", tactus::name_of(scene, part), part.since), fields(part));
 }
 
 void Service::describe(ServerFigures& out) {
@@ -325,11 +325,11 @@ void Service::describe(ServerFigures& out) {
   if (const auto seal = wire_.seal()) out.seal = seal->counters;
 }
 
-void Service::tell_widening(const ClientStatus& status, std::uint64_t now) {
-  Told& told = told_[status.client];
-  if (status.widening == told.widening || now < told.widened_at + kLasting) return;
-  told.widening = status.widening;
-  tell(status.client, now, "widened",
+void Service::log_widening(const ClientStatus& status, std::uint64_t now) {
+  Reported& reported = reported_[status.client];
+  if (status.widening == reported.widening || now < reported.widened_at + kLasting) return;
+  reported.widening = status.widening;
+  report(status.client, now, "widened",
        status.widening == 1 ? std::string("has the bounds that were asked for again")
                             : fmt::format("gets bounds {:.3g} times as wide: its network does not carry more", status.widening),
        {{"widening", status.widening}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A simulated world for clients that join: who sits where, whose hand is in it, and what an operator is told.
+/// A simulated world for clients that join: who sits where, whose hand is in it, and what is reported to an operator.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ class Service {
   std::size_t live() const;
   std::uint64_t refused() const { return refused_; }
   /// Whose key a client has; empty: there are no keys.
-  std::string user_of(std::uint16_t client) const { return told_[client].user ? told_[client].user->name : std::string(); }
+  std::string user_of(std::uint16_t client) const { return reported_[client].user ? reported_[client].user->name : std::string(); }
   /// All figures that are of sessions.   time that of status() of each client; allocates nothing
   void describe(ServerFigures& out);
 
@@ -50,8 +50,8 @@ class Service {
     DeviceSample device;
     bool is_lifted = false;  // the client is not heard
   };
-  /// What the operator was told of a client.
-  struct Told {
+  /// What was reported to the operator of a client.
+  struct Reported {
     double widening = 1;
     std::uint64_t widened_at = 0;  // [us] since when it is another one
     bool looks_on = false;
@@ -71,11 +71,11 @@ class Service {
   std::uint8_t number_of(const Seat& seat) const { return static_cast<std::uint8_t>(&seat - seats_.data() + 1); }
   const std::string& name_of(const Seat& seat) const { return world_.scene().users[number_of(seat) - 1u].name; }
   std::uint64_t silence_of(std::uint16_t client, std::uint64_t now) const;
-  void tell(const ServerEvent& event, std::uint64_t now);
-  void tell_refusal(LeaveReason reason, std::uint64_t now);
-  void tell_held(std::int64_t tick, std::uint64_t now);
-  void tell_widening(const ClientStatus& status, std::uint64_t now);
-  void tell(std::uint16_t client, std::uint64_t now, const char* event, const std::string& text, Json fields = Json::object());
+  void report(const ServerEvent& event, std::uint64_t now);
+  void log_refusal(LeaveReason reason, std::uint64_t now);
+  void log_held(std::int64_t tick, std::uint64_t now);
+  void log_widening(const ClientStatus& status, std::uint64_t now);
+  void report(std::uint16_t client, std::uint64_t now, const char* event, const std::string& text, Json fields = Json::object());
   void look_at_keys(std::uint64_t now);
   void look_at_floods(std::uint64_t now);
   void find_user(const ClientStatus& status);
@@ -91,16 +91,16 @@ class Service {
   BackgroundWork work_;                   // of the sessions
   std::vector<Seat> seats_;               // by user of the scene
   std::vector<DeviceSample> devices_;     // the same
-  std::vector<Told> told_;                // by client
+  std::vector<Reported> reported_;                // by client
   std::int64_t next_ = 0, left_out_ = 0;  // [ticks] the one to be made, those that the world was not simulated
   std::uint64_t refused_ = 0;
-  std::uint64_t looked_at_ = 0, limited_ = 0;  // [us], datagrams: when floods were told of last
+  std::uint64_t looked_at_ = 0, limited_ = 0;  // [us], datagrams: when floods were reported last
   bool must_look_ = false;
   // Since the beginning, for figures.
   TrafficTotal traffic_;
   std::uint64_t joined_ = 0, left_ = 0, moved_ = 0;
   std::array<std::uint64_t, 7> refusals_{};  // by LeaveReason
-  std::uint64_t refusal_told_at_ = 0;        // [us]
+  std::uint64_t refusal_logged_at_ = 0;        // [us]
   HeldLog held_;
 };
 

@@ -47,7 +47,7 @@ class ReloadOnHangUp {
 
 // ==== meter ====
 
-/// One line on standard error that tells how a session does; drawn only on a terminal, five times per second, gone afterwards.
+/// One line on standard error that shows how a session does; drawn only on a terminal, five times per second, gone afterwards.
 class Meter {
  public:
   explicit Meter(Visibility visibility);

@@ -72,7 +72,7 @@ void Visit::note(const Error& error) {
   if (std::string names = limits_of(error); !names.empty()) beyond = std::move(names);
 }
 
-void Visit::tell(const std::string& text) const {
+void Visit::print(const std::string& text) const {
   if (!options_.common.quiet) fmt::print(stderr, "{}\n", text);
 }
 
@@ -90,7 +90,7 @@ Outcome Visit::arrive() {
   if (options_.output.empty()) return {};
   if (trace) {  // it holds the scene before
     is_traced_ = false;
-    tell(fmt::format("the server has begun anew: {} ends here", shown_path(options_.output)));
+    print(fmt::format("the server has begun anew: {} ends here", shown_path(options_.output)));
     return {};
   }
   TraceInfo info = replica_info(scene, "join " + options_.server);
@@ -99,7 +99,7 @@ Outcome Visit::arrive() {
     DeviceSenses senses = body->chosen.device->capabilities().senses;
     senses.buttons = true;
     info.users.push_back(
-        {.name = body->shapes->scene().users[body->user].name, .senses = senses, .has_servo = true, .forces = KnownForces::felt});
+        {.name = body->shapes->scene().users[body->user].name, .senses = senses, .has_servo = true, .forces = KnownForces::rendered});
   }
   frame_ = replica_frame(scene);
   frame_.users.resize(info.users.size());
@@ -146,13 +146,13 @@ Outcome Visit::hear() {
 
 /// Without an answer the session joins again by itself. This end's address may be gone, or what the server knew of the seal.
 void Visit::look_at_network(std::uint64_t now) {
-  constexpr std::uint64_t kTold = 1'000'000, kRenewed = 1'500'000, kEvery = 5'000'000;  // [us]
+  constexpr std::uint64_t kUnanswered = 1'000'000, kRenewed = 1'500'000, kEvery = 5'000'000;  // [us]
   const std::uint64_t unanswered = session_.unanswered(now);
   if (unanswered > 0 && silent_since_ == 0) silent_since_ = now - unanswered;
-  if (unanswered > kTold && !std::exchange(is_unanswered_, true)) tell("no answer from the server for 1 s: joining again");
+  if (unanswered > kUnanswered && !std::exchange(is_unanswered_, true)) print("no answer from the server for 1 s: joining again");
   if (unanswered == 0) {
     if (std::exchange(is_unanswered_, false))
-      tell(fmt::format("the server answers again, after {:.1f} s", 1e-6 * static_cast<double>(now - silent_since_)));
+      print(fmt::format("the server answers again, after {:.1f} s", 1e-6 * static_cast<double>(now - silent_since_)));
     silent_since_ = 0;
     return;
   }
@@ -167,7 +167,7 @@ void Visit::look_at_key() {
   if (is_doubted_ == wire_.is_doubted()) return;
   is_doubted_ = wire_.is_doubted();
   if (is_doubted_)
-    tell(fmt::format(
+    print(fmt::format(
         "{} answers, but does not accept the key \"{}\" of {}: it is another one, or its user was removed. Get a key file "
         "from whoever runs the server. Trying on",
         options_.server, wire_.seal()->user, shown_path(options_.key)));
@@ -179,17 +179,17 @@ void Visit::look_at_arrival(std::uint64_t now) {
   const SessionStatus status = session_.status();
   if (was_live || closed) return;
   if (socket_.is_refused() && now > begun_at_ + kWait && !std::exchange(is_alone_, true))
-    tell(fmt::format("nobody listens at {}: waiting for a server", options_.server));
+    print(fmt::format("nobody listens at {}: waiting for a server", options_.server));
   const bool is_unheard = status.state == SessionState::joining && now > begun_at_ + kWait && !socket_.is_refused();
   if (is_unheard && options_.key.empty() && !std::exchange(is_unheard_, true))
-    tell(fmt::format(
+    print(fmt::format(
         "{} takes datagrams but does not answer: if its server has a key, this end needs it too (--key FILE). Trying on",
         options_.server));
   if (status.state != SessionState::receiving) return;
-  if (receiving_since_ == 0) receiving_since_ = progress_told_at_ = now;
-  if (now < progress_told_at_ + kEvery) return;
-  progress_told_at_ = now;
-  tell(progress_text(status.received, status.declaration, now - receiving_since_));
+  if (receiving_since_ == 0) receiving_since_ = progress_shown_at_ = now;
+  if (now < progress_shown_at_ + kEvery) return;
+  progress_shown_at_ = now;
+  print(progress_text(status.received, status.declaration, now - receiving_since_));
 }
 
 std::string Visit::meter_text(std::uint64_t now, std::uint64_t missed) const {
@@ -204,17 +204,17 @@ std::string Visit::meter_text(std::uint64_t now, std::uint64_t missed) const {
 
 /// What the hand of this end is.
 void Visit::look_at_seat(std::uint64_t now) {
-  constexpr std::uint64_t kSoon = 1'000'000;  // [us]: by then the server has told
+  constexpr std::uint64_t kSoon = 1'000'000;  // [us]: by then the server has sent it
   if (!body || closed || session_.status().state != SessionState::live) return;
   const std::uint8_t seat = session_.status().seat;
   if (seat_ == seat || (seat == 0 && now < live_at_ + kSoon)) return;
   seat_ = seat;
   const std::string& user = body->shapes->scene().users[body->user].name;
   if (seat == kOnlyLooksOn)
-    return tell(fmt::format("looks on: the key \"{}\" may not touch. Whoever runs the server can change its role",
+    return print(fmt::format("looks on: the key \"{}\" may not touch. Whoever runs the server can change its role",
                             wire_.seal() ? wire_.seal()->user : ""));
-  if (seat > 0) return tell("plays " + user);
-  tell(fmt::format("{} is played by another: this end looks on until the seat is free. --user NAME plays another one", user));
+  if (seat > 0) return print("plays " + user);
+  print(fmt::format("{} is played by another: this end looks on until the seat is free. --user NAME plays another one", user));
 }
 
 void Visit::say(std::uint64_t now) {
@@ -262,9 +262,9 @@ Outcome Visit::render(std::uint64_t now) {
   const auto delay =
       static_cast<std::uint32_t>((session_.round_trip_shown(now).value_or(0) * sim::kTickRate + 500'000) / 1'000'000);
   own.client->touch(own.user, own.sample, {session_.force_fraction(now), delay});
-  if (const auto exerted = own.servo->exert(own.client->felt(own.user)); !exerted)
+  if (const auto exerted = own.servo->exert(own.client->rendered_force(own.user)); !exerted)
     return refuse_device(own.chosen.device->capabilities().name, exerted.error());
-  largest_force = std::max(largest_force, norm(own.client->felt(own.user)));
+  largest_force = std::max(largest_force, norm(own.client->rendered_force(own.user)));
   return {};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What `tactus join` is while it runs: the hand and device of a participant, the session, and what the person is told.
+/// What `tactus join` is while it runs: the hand and device of a participant, the session, and what is printed for the person.
 #pragma once
 
 #include <memory>
@@ -50,7 +50,7 @@ struct Body {
 /// Scene and device of a participant.
 tl::expected<Body, Failure> make_body(const JoinOptions& options);
 
-/// Takes part in a session in real time, and tells the person at the terminal what becomes of it.
+/// Takes part in a session in real time, and prints for the person at the terminal what becomes of it.
 class Visit {
  public:
   Visit(const JoinOptions& options, SessionClient& session, net::UdpSocket& socket, const net::Address& server, ClientWire& wire);
@@ -88,7 +88,7 @@ class Visit {
   void look_at_arrival(std::uint64_t now);
   void look_at_seat(std::uint64_t now);
   void look_at_key();
-  void tell(const std::string& text) const;
+  void print(const std::string& text) const;
 
   const JoinOptions& options_;
   SessionClient& session_;
@@ -98,9 +98,9 @@ class Visit {
   TokenFile token_;
   bool is_traced_ = true;  // until the server begins anew: its ticks do, too
   bool has_joined_ = false, is_unanswered_ = false, is_alone_ = false, is_unheard_ = false, is_doubted_ = false;
-  std::uint64_t begun_at_ = microseconds_now(), receiving_since_ = 0, progress_told_at_ = 0;  // [us]
+  std::uint64_t begun_at_ = microseconds_now(), receiving_since_ = 0, progress_shown_at_ = 0;  // [us]
   std::uint64_t renewed_at_ = 0, live_at_ = 0, silent_since_ = 0;                             // [us]
-  std::optional<std::uint8_t> seat_;                                                          // that was told
+  std::optional<std::uint8_t> seat_;                                                          // as the server sent it
   TraceFrame frame_;
   std::int64_t shown_ = -1, written_ = -1;
 };

@@ -25,7 +25,7 @@ namespace tactus::cli {
 class Peers {
  public:
   using HasSession = std::function<bool(std::uint64_t peer)>;
-  /// in   most  sessions at a time;  secret  64 bits that nobody else can tell
+  /// in   most  sessions at a time;  secret  64 bits that nobody else can guess
   Peers(std::size_t most, std::uint64_t secret) : most_(most), strangers_(secret) {}
 
   /// A datagram is not too much for its sender, or for all senders without a session. Others are dropped and counted before anything is
@@ -73,7 +73,7 @@ struct WireUser {
 struct KeyNews {
   std::string text;                    ///< for the operator
   bool is_refused = false;             ///< it cannot be used: the keys before stay
-  std::vector<std::uint64_t> removed;  ///< peers whose user is not in it any more: they are closed, and were told why
+  std::vector<std::uint64_t> removed;  ///< peers whose user is not in it any more: they are closed, and were sent the reason
 };
 
 /// Of a server. Spans are valid until the next call.

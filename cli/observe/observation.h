@@ -42,7 +42,7 @@ class Observation {
   virtual const std::string& address() const noexcept = 0;
   /// A tick of the server.   time, allocations: those of TickQueue::offer
   virtual void offer(const TraceFrame& frame, std::span<const ObjectLoad> loads) noexcept = 0;
-  /// Tell the observers that it is over, and end the thread.
+  /// Notify the observers that it is over, and end the thread.
   virtual ObservationReport finish() = 0;
 };
 

@@ -106,7 +106,7 @@ constexpr std::array kOptions{
     Row{"--uplink", kNetwork},
     Row{"--playout", kNetwork},
     Row{"--compensation", kNetwork},
-    Row{"--told", kNetwork},
+    Row{"--client-model-scale", kNetwork},
     Row{"--clients", kNetwork},
     Row{"--key", kNetwork},
     Row{"--observe", kWatch},

@@ -245,11 +245,11 @@ std::optional<std::uint32_t> playout_of(const std::string& value) {
   return static_cast<std::uint32_t>(std::llround(1e6 * parse_quantity(value, Dimension::time)->value));
 }
 
-Option* add_told(Command& app, double& value) {
+Option* add_client_model_scale(Command& app, double& value) {
   return app
-      .add_option("--told", value,
-                  "Mass and stiffness that clients are told of what their devices move, times the true ones, to see what a wrong "
-                  "model costs; 0: they are told none [1]")
+      .add_option("--client-model-scale", value,
+                  "Mass and stiffness in the clients' models of what their devices move, times the true ones, to see what a wrong "
+                  "model costs; 0: no models are declared [1]")
       ->check(number(0, 1e3))
       ->type_name("FACTOR");
 }

@@ -40,8 +40,8 @@ Option* add_playout(Command& app, std::string& value);
 /// [us]; nothing: adaptive.   pre  checked by add_playout()
 std::optional<std::uint32_t> playout_of(const std::string& value);
 
-/// `--told FACTOR`.
-Option* add_told(Command& app, double& value);
+/// `--client-model-scale FACTOR`.
+Option* add_client_model_scale(Command& app, double& value);
 
 /// `--key FILE`.
 Option* add_key(Command& app, std::string& value);

@@ -72,8 +72,8 @@ Json without_fractions(Json traffic) {
 
 Json forces_json(KnownForces known) {
   Json out = Json::array();
-  if (known != KnownForces::server) out.push_back("felt");
-  if (known != KnownForces::felt) out.push_back("server");
+  if (known != KnownForces::server) out.push_back("rendered");
+  if (known != KnownForces::rendered) out.push_back("server");
   return out;
 }
 

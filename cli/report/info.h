@@ -70,7 +70,7 @@ struct StreamEnd {
 Value stream_info_value(const Player& player, const StreamTotals& totals, std::uint64_t file_bytes, const StreamEnd& end);
 Value packet_info_value(const PlayedPacket& played, const Scene& scene);
 
-/// What reading a trace to its end told.
+/// What reading a trace to its end showed.
 struct TraceTotals {
   std::uint64_t frames = 0;
   std::int64_t first = 0, last = 0;

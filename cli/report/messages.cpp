@@ -12,7 +12,7 @@
 namespace tactus::cli {
 namespace {
 
-tl::unexpected<Failure> refuse_told(std::string text, const std::string& file, const std::string& place, const Error& error) {
+tl::unexpected<Failure> refuse_with(std::string text, const std::string& file, const std::string& place, const Error& error) {
   auto refused = refuse(std::move(text), "");
   refused.value().file = file;
   refused.value().place = place;
@@ -32,7 +32,7 @@ std::string place_of_bit(std::uint64_t bit_offset) {
 tl::unexpected<Failure> refuse(const std::string& file, const std::string& place, const Error& error) {
   const int cause = error.code == Errc::io ? errno : 0;
   auto refused =
-      refuse_told(fmt::format("{}{}{}: {}{}{} ({}, {})", shown_path(file), place.empty() ? "" : ", ", place, describe(error),
+      refuse_with(fmt::format("{}{}{}: {}{}{} ({}, {})", shown_path(file), place.empty() ? "" : ", ", place, describe(error),
                               cause == 0 ? "" : ": ", cause == 0 ? "" : std::generic_category().message(cause),
                               errc_name(error.code), error.rule),
                   file, place, error);
@@ -41,7 +41,7 @@ tl::unexpected<Failure> refuse(const std::string& file, const std::string& place
 }
 
 tl::unexpected<Failure> refuse(const Diagnostic& error) {
-  return refuse_told(to_string(error), error.file, place_of(error), error.error);
+  return refuse_with(to_string(error), error.file, place_of(error), error.error);
 }
 
 tl::unexpected<Failure> refuse(const std::string& file, const Diagnostic& error) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What went wrong, in words: file, place, rule and what would mend it. The sentences of rules are those of spec/rules.csv.
+/// What went wrong, in words: file, place, rule and a remedy. The sentences of rules are those of spec/rules.csv.
 #pragma once
 
 #include <cstdint>

@@ -25,7 +25,7 @@ void print_notes(const std::vector<ReadNote>& notes, const std::string& file) {
   for (const ReadNote& note : notes) fmt::print(stderr, "note: {}: {}\n", shown_path(file), shown(text_of(note), 1000));
 }
 
-void tell(const std::vector<ReadNote>& notes, const std::string& file, Report& report) {
+void report_notes(const std::vector<ReadNote>& notes, const std::string& file, Report& report) {
   print_notes(notes, file);
   report.add(notes);
 }

@@ -17,6 +17,6 @@ std::vector<std::string> texts_of(const std::vector<ReadNote>& notes);
 /// "note: FILE: /cup/pose: 12 samples ..." on standard error: there people see them, once. A report has them in its JSON alone.
 void print_notes(const std::vector<ReadNote>& notes, const std::string& file);
 /// Both.
-void tell(const std::vector<ReadNote>& notes, const std::string& file, Report& report);
+void report_notes(const std::vector<ReadNote>& notes, const std::string& file, Report& report);
 
 }  // namespace tactus::cli

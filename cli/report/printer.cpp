@@ -36,8 +36,8 @@ const std::string& text_at(const Json& schema, const char* key) {
 /// The unit after a number, " mm", or nothing.
 std::string unit_of(const Json& schema) {
   const std::string &unit = text_at(schema, "x-unit"), &format = text_at(schema, "x-format");
-  const bool is_told = unit == "none" || unit == "of the row" || format == "percent" || format == "duration";
-  return is_told ? "" : unit;
+  const bool has_own_unit = unit == "none" || unit == "of the row" || format == "percent" || format == "duration";
+  return has_own_unit ? "" : unit;
 }
 
 std::string labelled(const std::string& title, const Json& schema) {

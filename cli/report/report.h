@@ -68,7 +68,7 @@ class StepTimes {
 };
 
 // ==== mesh report ====
-// What a report tells of one deformable object.
+// What a report holds of one deformable object.
 
 struct MeshReport {
   std::string name;
@@ -150,7 +150,7 @@ struct TouchReport {
   double contact_fraction = 0;         ///< of the ticks
   std::uint64_t contacts = 0;          ///< begun
   std::uint32_t most_in_a_second = 0;  ///< of them
-  double largest_force = 0;            ///< [N] felt
+  double largest_force = 0;            ///< [N] rendered
   double largest_server_force = 0;     ///< [N]
   double swing = 0;                    ///< [m] to and fro, while the hand was to hold still
   double lowest_energy = 0;            ///< [J] of a contact, at most 0
@@ -200,7 +200,7 @@ struct CheckReport {
   std::string against;              ///< "half the step"
   std::vector<Quantity> objects{};  ///< [m] position, of the way from its first one
   std::vector<double> turns{};      ///< [rad] largest difference in rotation, one per object
-  std::vector<Quantity> users{};    ///< [N] force felt
+  std::vector<Quantity> users{};    ///< [N] rendered force
   std::vector<Quantity> meshes{};   ///< [m] vertex farthest off, of the largest displacement
   double cpu = 0;                   ///< [s] of the finer run
 };

@@ -28,24 +28,24 @@ void warn_of_chatter(const TouchReport& touch, Report& report) {
 }
 
 void warn_of_sampling(const sim::Scene& scene, const sim::Simulation& simulation, std::size_t user, Report& report) {
-  const double stiffness = simulation.touched(user).stiffest, bears = simulation.bears(user);
-  if (stiffness <= bears) return;
+  const double stiffness = simulation.touched(user).stiffest, tolerated = simulation.tolerated_stiffness(user);
+  if (stiffness <= tolerated) return;
   report.warnings.push_back(fmt::format(
       "{}: a coupling of {:.4g} N/m exceeds {:.4g} N/m, the stability limit of this hand with its device's filter at {} Hz "
       "on a rigid surface",
-      scene.users[user].name, stiffness, bears, sim::kTickRate));
+      scene.users[user].name, stiffness, tolerated, sim::kTickRate));
 }
 
 /// All who may press an object at once count (eq. 4.38).
 void warn_of_deformation(const sim::Scene& scene, const SurfaceContact& hardest, Report& report) {
   const sim::SceneDeformable& object = scene.deformables[hardest.mesh];
   const double sum = static_cast<double>(scene.users.size()) * object.stiffness;
-  const auto bears = sim::critical_stiffness(object, hardest);
-  if (!bears || sum <= *bears) return;
+  const auto tolerated = sim::critical_stiffness(object, hardest);
+  if (!tolerated || sum <= *tolerated) return;
   report.warnings.push_back(fmt::format(
       "{}: a total coupling of {:.4g} N/m exceeds {:.4g} N/m, the limit of thesis eq. 4.38 at one deformation every {:g} ms. The "
       "contact may become unstable: give a smaller rate or stiffness",
-      object.name, sum, *bears, 1e3 * object.rate * sim::kTick));
+      object.name, sum, *tolerated, 1e3 * object.rate * sim::kTick));
 }
 
 constexpr double kSwing = 0.7e-3;     // [m], above what tremor makes
@@ -54,7 +54,7 @@ constexpr double kUnder = 0.5;        // of the server's force, less
 constexpr double kUnderForce = 0.25;  // [N]
 
 /// In 130 loops of one, two and four users at a cube with a tremor of 0.05 mm, what died away within a second swung by at most 0.95 mm, and
-/// what did not by 1.3 mm and more. The least energy of the contacts does not tell them apart: -176 and -163 mJ in one that was stable,
+/// what did not by 1.3 mm and more. The least energy of the contacts does not distinguish them: -176 and -163 mJ in one that was stable,
 /// -115 and -62 mJ in one that was not.
 void warn_of_swing(const sim::Scene& scene, std::size_t user, const TouchReport& touch, bool has_network, Report& report) {
   if (touch.swing <= kSwing + kTremors * scene.users[user].tremor) return;
@@ -72,7 +72,7 @@ void warn_of_undershoot(const sim::Scene& scene, const TouchReport& touch, bool 
   if (!has_network || !scene.compensation || scene.compensation->method != sim::CompensationMethod::stiffness) return;
   if (touch.largest_force >= kUnder * touch.largest_server_force - kUnderForce) return;
   report.warnings.push_back(
-      fmt::format("{}: it felt at most {:.2g} N where the server's force is up to {:.2g} N: softer rendering shows what resists "
+      fmt::format("{}: at most {:.2g} N are rendered where the server's force is up to {:.2g} N: softer rendering shows what resists "
                   "steadily, not the impact on what hardly does. Give --compensation simulation",
                   touch.user, touch.largest_force, touch.largest_server_force));
 }

@@ -106,7 +106,7 @@ constexpr double kFraction = 0.05;  // of the stream's bounds
 // What the grid of every stream can hold.
 constexpr double kLeastLength = 4e-6, kLeastAngle = 1e-4;  // [m], [rad]
 
-constexpr const char* kKnown[] = {"both", "felt", "server"};  // index: KnownForces
+constexpr const char* kKnown[] = {"both", "rendered", "server"};  // index: KnownForces
 
 enum class Touch : std::uint8_t { none = 0, surface = 1, spring = 2, mesh = 3 };
 
@@ -181,7 +181,7 @@ void TruthData::add_users(const TraceFrame& frame, const std::vector<Pose>& show
     users_[i].kind.add(static_cast<std::int64_t>(touch));
     users_[i].contact.add(touch == Touch::none ? user.device.position : place_of(user, frame, touch));
     users_[i].server.add(user.server_force);
-    users_[i].felt.add(user.force);
+    users_[i].rendered.add(user.force);
     const bool is_rigid = touch == Touch::surface || touch == Touch::spring;
     users_[i].shown.add(is_rigid ? contact_force(user.contact, shown[user.contact.object]) : Vec3{});
     users_[i].differ = users_[i].differ || norm(user.force - user.server_force) > 1e-3;
@@ -230,7 +230,7 @@ std::size_t TruthData::bytes() const {
   std::size_t sum =
       ghost_.bytes() + ticks_.bytes() + position_.bytes() + rotation_.bytes() + force_error_.bytes() + force_bound_.bytes();
   for (const User& user : users_)
-    sum += user.kind.bytes() + user.device.bytes() + user.contact.bytes() + user.server.bytes() + user.felt.bytes() +
+    sum += user.kind.bytes() + user.device.bytes() + user.contact.bytes() + user.server.bytes() + user.rendered.bytes() +
            user.shown.bytes();
   for (const Mesh& mesh : meshes_) sum += mesh.ticks.bytes() + mesh.error.bytes();
   return sum;
@@ -263,8 +263,8 @@ nlohmann::ordered_json TruthData::take() {
                                  {"kind", user.kind.take()},
                                  {"device", user.device.take()},
                                  {"contact", user.contact.take()}};
-    if (known != KnownForces::felt) entry["server"] = user.server.take();
-    if (known == KnownForces::felt || (known == KnownForces::both && user.differ)) entry["felt"] = user.felt.take();
+    if (known != KnownForces::rendered) entry["server"] = user.server.take();
+    if (known == KnownForces::rendered || (known == KnownForces::both && user.differ)) entry["rendered"] = user.rendered.take();
     if (moves) entry["shown"] = user.shown.take();
     out["users"].push_back(std::move(entry));
   }

@@ -159,8 +159,8 @@ class TruthData {
  private:
   struct User {
     Column kind{1};
-    VectorColumn device{1e-5}, contact{1e-5}, server{1e-3}, felt{1e-3}, shown{1e-3};
-    bool differ = false;  // what is felt and the server's force
+    VectorColumn device{1e-5}, contact{1e-5}, server{1e-3}, rendered{1e-3}, shown{1e-3};
+    bool differ = false;  // the rendered force and the server's
   };
   struct Mesh {
     Column ticks{1}, error{1e-8};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the objects of a stream look like: a stream tells where they are, a scene what they are.
+/// What the objects of a stream look like: a stream holds where they are, a scene what they are.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 
 namespace tactus::cli {
 
-/// Shapes and floor of a scene that a trace brought along, as far as it tells them without other files. Never an error: what cannot be
+/// Shapes and floor of a scene that a trace brought along, as far as it holds them without other files. Never an error: what cannot be
 /// read is not shown.
 nlohmann::ordered_json attached_shapes(const std::string& text);
 

@@ -20,7 +20,7 @@ std::array<std::string, 4> parts_of(const Diagnostic& d) {
           shown(d.detail, kMostOfDetail)};
 }
 
-/// A sentence as the end of a line: "Mend the line." is "mend the line".
+/// A sentence as the end of a line: "Repair the line." is "repair the line".
 std::string as_clause(std::string_view sentence) {
   if (sentence.ends_with('.')) sentence.remove_suffix(1);
   std::string out = shown(sentence, kMostOfRemedy);
@@ -49,8 +49,8 @@ std::string to_string(const Diagnostic& diagnostic) {
   }
   out += diagnostic.error.rule + std::string(": ") +
          (diagnostic.cause.empty() ? describe(diagnostic.error) : shown(diagnostic.cause, kMostOfRemedy));
-  const std::string mend = as_clause(diagnostic.remedy.empty() ? remedy(diagnostic.error) : diagnostic.remedy);
-  return mend.empty() ? out : out + "; " + mend;
+  const std::string fix = as_clause(diagnostic.remedy.empty() ? remedy(diagnostic.error) : diagnostic.remedy);
+  return fix.empty() ? out : out + "; " + fix;
 }
 
 }  // namespace tactus

@@ -11,7 +11,7 @@ namespace {
 
 constexpr char32_t kReplacement = 0xFFFD;
 constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF", kLittleMark = "\xFF\xFE", kBigMark = "\xFE\xFF";
-constexpr std::size_t kLooked = 4;  // bytes that tell the encoding
+constexpr std::size_t kLooked = 4;  // bytes that show the encoding
 
 bool is_zero(std::string_view bytes, std::size_t at) noexcept { return bytes[at] == '\0'; }
 
@@ -31,7 +31,7 @@ bool is_plain_name(std::string_view text) noexcept {
   return !text.empty() && text.size() <= 255 && std::none_of(text.begin(), text.end(), forbidden) && is_utf8(text);
 }
 
-/// Take away the mark, or tell by the zeros of letters and digits.
+/// Take away the mark, or recognise it by the zeros of letters and digits.
 void TextDecoder::settle() {
   const std::string_view front = kept_;
   std::size_t mark = 2;

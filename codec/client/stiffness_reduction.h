@@ -15,7 +15,7 @@
 /// 4.52: 4.55 takes its magnitude, which would soften the object also while the user lets it go. A contact's first value is not filtered.
 ///
 /// Rigid objects, after algorithm 1 and equations 4.24 to 4.30. While the device goes on by w within a round trip, the stretch p that the
-/// client sees is too long by w, as far as the object follows; the object's load (load/load_state.h) tells what it resists with, F. Along
+/// client sees is too long by w, as far as the object follows; the object's load (load/load_state.h) is what it resists with, F. Along
 /// the direction u of the push:
 ///
 ///   F   = -(external + pushes of the others) . u; while the object stands still, what would set it in motion: |hold| - pushes . u; not below 0

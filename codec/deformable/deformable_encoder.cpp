@@ -111,7 +111,7 @@ bool MainEncoder::is_within_bounds() const noexcept {
   return true;
 }
 
-/// The body alone if it is within the bounds; else with what it differs by now, if the device's way has told this shape better than the
+/// The body alone if it is within the bounds; else with what it differs by now, if the device's way has predicted this shape better than the
 /// motion so far.
 Following MainEncoder::choose_following(const EncodeRequest<MainState>& request) noexcept {
   const MainState& shown = request.shown;
@@ -227,7 +227,7 @@ Result<Payload> MainEncoder::encode(const EncodeRequest<MainState>& request, std
   if (head.layer == Layer::haptic && !head.touched) return Payload{};
   coder_.set_packet(head, rings_, object_.rings);
   if (!request.requested && bounds_hold(request)) return Payload{};
-  // What is felt goes first: a key packet of the rest alone would forget it.
+  // What is rendered goes first: a key packet of the rest alone would forget it.
   if (head.layer == Layer::visual && head.key && head.touched) return Payload{};
   const MainState& base = request.base;
   head.following = choose_following(request);

@@ -57,7 +57,7 @@ class ModeMotion {
 // only.
 
 /// Whether what is shown follows the device, for who knows it (elastic/driven_shape.h), and what becomes of what it differs by from the
-/// body that both ends work out.
+/// body that both ends compute.
 enum class Following : std::uint8_t { none = 0, kept = 1, fading = 2 };
 
 inline constexpr std::uint32_t kNoTriangle = 0xffffffff;

@@ -33,13 +33,13 @@ void ThesisEncoder::list_vertices(const ThesisState& state, Layer layer) noexcep
   };
   const double visual = squared_units(t.visual);
   double haptic = visual;
-  std::span<const std::uint32_t> felt;
-  if (is_felt()) {
+  std::span<const std::uint32_t> touched;
+  if (has_haptic_bound()) {
     haptic = std::min(visual, squared_units(haptic_threshold(t, *touch_)));
     rings_.triangles_around(touch_->triangle, object_.rings);
-    felt = rings_.vertices();
+    touched = rings_.vertices();
   }
-  for (const std::uint32_t v : felt) inside_[v] = 1;
+  for (const std::uint32_t v : touched) inside_[v] = 1;
   expected_ = state.displacement;
   listed_.clear();
   for (std::uint32_t v = 0; v < truth_.size(); ++v) {
@@ -47,7 +47,7 @@ void ThesisEncoder::list_vertices(const ThesisState& state, Layer layer) noexcep
     if (layer == (inside ? Layer::visual : Layer::haptic)) continue;
     if (static_cast<double>(squared_distance(truth_[v], expected_[v])) >= (inside ? haptic : visual)) listed_.push_back(v);
   }
-  for (const std::uint32_t v : felt) inside_[v] = 0;
+  for (const std::uint32_t v : touched) inside_[v] = 0;
 }
 
 ThesisHead ThesisEncoder::head_for(const PacketHead& head) const noexcept {
@@ -95,14 +95,14 @@ std::size_t ThesisEncoder::write_head(const ThesisHead& head, std::span<std::uin
 
 Result<Payload> ThesisEncoder::encode(const EncodeRequest<ThesisState>& request, std::span<std::uint8_t> out) noexcept {
   const bool key = request.head.key;
-  if (request.layer == Layer::haptic && !is_felt()) return Payload{};
+  if (request.layer == Layer::haptic && !has_haptic_bound()) return Payload{};
   list_vertices(request.shown, key ? Layer::all : request.layer);  // a key packet forgets the whole shape
   if (listed_.empty() && !request.requested) return Payload{};
-  // What is felt goes first: a key packet of the rest alone would forget it.
-  if (request.layer == Layer::visual && key && is_felt()) return Payload{};
+  // What is rendered goes first: a key packet of the rest alone would forget it.
+  if (request.layer == Layer::visual && key && has_haptic_bound()) return Payload{};
   if (key || &request.base != &request.shown) {
     list_vertices(request.base, request.layer);
-    if (listed_.empty()) listed_.push_back(is_felt() ? object_.triangles[touch_->triangle][0] : 0);  // R-DEF-12: at least one
+    if (listed_.empty()) listed_.push_back(has_haptic_bound() ? object_.triangles[touch_->triangle][0] : 0);  // R-DEF-12: at least one
   }
   models_ = object_.models_kept ? request.base.models : start_;
   ThesisHead head = head_for(request.head);

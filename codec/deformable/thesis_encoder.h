@@ -34,7 +34,7 @@ class ThesisEncoder {
   void commit(const ThesisState&, ThesisState& next) noexcept { std::swap(next_, next); }
 
  private:
-  bool is_felt() const noexcept { return touch_ != nullptr && options_.thresholds.weber_fraction; }
+  bool has_haptic_bound() const noexcept { return touch_ != nullptr && options_.thresholds.weber_fraction; }
   void list_vertices(const ThesisState& state, Layer layer) noexcept;
   ThesisHead head_for(const PacketHead& head) const noexcept;
   std::size_t write_head(const ThesisHead& head, std::span<std::uint8_t> out) const noexcept;

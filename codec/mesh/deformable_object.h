@@ -131,8 +131,8 @@ struct DeformableObject {
   SpringBasis spring_basis;    ///< main: in place of `basis`, which a Scene then computes
   ClusterBasis cluster_basis;  ///< main: the same
   std::vector<std::uint8_t>
-      stiffness;                    ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not told
-  std::optional<ElasticBody> body;  ///< main, not layered: what it is made of; none: not told
+      stiffness;                    ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not declared
+  std::optional<ElasticBody> body;  ///< main, not layered: what it is made of; none: not declared
   friend bool operator==(const DeformableObject&, const DeformableObject&) = default;
 };
 
@@ -143,7 +143,7 @@ Result<std::uint8_t> stiffness_level(double stiffness) noexcept;
 /// [N/m]
 double stiffness_of_level(std::uint8_t level) noexcept;
 /// [N/m] At a point of a triangle, by barycentric weights; infinite where a corner that does not move has one.   time O(1)
-/// pre  the object tells its stiffness
+/// pre  the object declares its stiffness
 double stiffness_at(const DeformableObject& object, std::uint32_t triangle, const std::array<double, 3>& weights) noexcept;
 
 /// A surface on a scene's grid; all other fields keep their defaults.

@@ -31,7 +31,7 @@ struct SenderPolicy {
   /// initial state: a receiver that showed an earlier run goes on showing these as before, unless it begins anew as well.
   std::uint16_t first_sequence = 1;
   Baseline baseline = Baseline::previous;
-  /// [s] After this long without a packet of the rigid objects one of them is told again, and at once at the beginning: a receiver that
+  /// [s] After this long without a packet of the rigid objects one of them is sent again, and at once at the beginning: a receiver that
   /// shows the past then knows the time. 0: never. Where states are acknowledged it does what the heartbeat of every object would.
   double silence = 0;
 };

@@ -44,7 +44,7 @@ class DevicePath {
     passed_ = device_tick(tick).value_or(passed_);
   }  ///< up to here nothing is added any more
 
-  /// Tick of the server from which on it may be known; nothing: no pace was told yet.
+  /// Tick of the server from which on it may be known; nothing: no pace was signalled yet.
   std::optional<std::int64_t> begins() const noexcept { return begins_; }
 
   /// The state that the device has at a tick of the server, and its own tick then.
@@ -59,7 +59,7 @@ class DevicePath {
   const SharedScene& scene() const noexcept { return scene_; }
 
  private:
-  static constexpr std::uint64_t kSettled = 128;  // numbers below the newest: nothing more is told of them
+  static constexpr std::uint64_t kSettled = 128;  // numbers below the newest: nothing more is reported of them
   struct Packet {
     std::uint64_t number = 0;
     bool acts = true;

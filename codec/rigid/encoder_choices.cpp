@@ -102,7 +102,7 @@ void ForceTrend::read(std::int64_t tick, std::span<const RigidSample> samples, c
   }
 }
 
-double ForceTrend::sinking(std::uint32_t object) const noexcept {
+double ForceTrend::relative_decay_rate(std::uint32_t object) const noexcept {
   const double now = forces_[0][object], before = forces_[2][object];
   const double seconds = static_cast<double>(ticks_[0] - ticks_[2]) / scene_.tick_rate;
   if (!(now > 0 && now < before && before < kNone) || seconds > kLongest) return 0;
@@ -112,8 +112,8 @@ double ForceTrend::sinking(std::uint32_t object) const noexcept {
 // ==== error ratio ====
 
 ErrorRatio::ErrorRatio(std::uint32_t object, const Pose& truth, const Contacts& contacts, const RigidTriggers& triggers,
-                       double sinking) noexcept
-    : per_metre_(1 / triggers.visual_position), per_radian_(1 / triggers.visual_rotation), sinking_(sinking) {
+                       double decay_rate) noexcept
+    : per_metre_(1 / triggers.visual_position), per_radian_(1 / triggers.visual_rotation), decay_rate_(decay_rate) {
   if (triggers.haptic == HapticRule::off) return;
   for (const Contact& contact : contacts) {
     if (contact.kind == ContactKind::none || contact.object != object) continue;
@@ -138,11 +138,11 @@ double ErrorRatio::operator()(const Vec3& moved, const Vec3& turned, double late
   for (std::size_t i = 0; i < count_; ++i) {
     const Touch& touch = touches_[i];
     const Vec3 at_point = moved + cross(turned, touch.lever);
-    const Vec3 felt = touch.normal == Vec3{}
+    const Vec3 effective = touch.normal == Vec3{}
                           ? at_point
                           : dot(at_point, touch.normal) * touch.normal + touch.depth * cross(turned, touch.normal);
-    const double left = std::max(touch.least, 1 - sinking_ * later);
-    out = std::max({out, touch.per_metre / left * norm(felt), touch.per_radian * norm(turned)});
+    const double left = std::max(touch.least, 1 - decay_rate_ * later);
+    out = std::max({out, touch.per_metre / left * norm(effective), touch.per_radian * norm(turned)});
   }
   return out;
 }
@@ -176,7 +176,7 @@ namespace {
 constexpr double kInside = 0.7;  // fraction of the bounds at the end, 1 at the begin: the truth will not do exactly what is taken
 constexpr std::array kParts{0.25, 0.5, 0.75, 1.0};
 
-bool stays_inside(const UpdateCourse& c, const ErrorRatio& ratio, double duration) noexcept {
+bool stays_inside(const ErrorTrajectory& c, const ErrorRatio& ratio, double duration) noexcept {
   for (const double part : kParts) {
     const double t = part * duration, left = 1 - part, gone = Acceleration::departure(t);
     const Vec3 moved = left * c.offset.moved + c.error.moved + t * c.drift.linear - gone * c.acceleration.linear;
@@ -188,9 +188,9 @@ bool stays_inside(const UpdateCourse& c, const ErrorRatio& ratio, double duratio
 
 }  // namespace
 
-std::uint8_t longest_smoothing_exp(const UpdateCourse& course, const ErrorRatio& ratio, std::uint32_t tick_rate) noexcept {
+std::uint8_t longest_smoothing_exp(const ErrorTrajectory& trajectory, const ErrorRatio& ratio, std::uint32_t tick_rate) noexcept {
   for (int smoothing_exp = usual_smoothing_exp(tick_rate); smoothing_exp > 0; --smoothing_exp)
-    if (stays_inside(course, ratio, static_cast<double>(1u << smoothing_exp) / tick_rate)) return static_cast<std::uint8_t>(smoothing_exp);
+    if (stays_inside(trajectory, ratio, static_cast<double>(1u << smoothing_exp) / tick_rate)) return static_cast<std::uint8_t>(smoothing_exp);
   return 0;
 }
 
@@ -258,10 +258,10 @@ double DrivenChoice::drag_of(std::uint32_t object, const RigidSample& now, const
 }
 
 void DrivenChoice::read(std::int64_t tick, std::span<const RigidSample> samples, const Contacts& contacts,
-                        std::span<DrivenContact> told) noexcept {
+                        std::span<DrivenContact> signalled) noexcept {
   const auto device = path_.at(tick);
   for (const std::uint32_t i : scene_.moving()) {
-    told[i] = {};
+    signalled[i] = {};
     const DrivenConstants::Body& body = scene_.driven->bodies[i];
     const Contact* const contact = device && body.coupling != 0 ? own_contact(i, contacts, *device) : nullptr;
     Moment& moment = moments_[(kWindow + 1) * i + static_cast<std::size_t>(tick) % (kWindow + 1)];
@@ -285,7 +285,7 @@ void DrivenChoice::read(std::int64_t tick, std::span<const RigidSample> samples,
       const Vec3 rounding = std::ldexp(body.coupling, -8) * rotate(sample.pose.rotation, off);
       out.drag = on_grid({drag_of(i, sample, rounding), 0, 0}, DrivenContact::kDrag)[0];
     }
-    told[i] = out;
+    signalled[i] = out;
   }
 }
 
@@ -318,7 +318,7 @@ PastStates::PastStates(const Scene& scene)
       unsettled_(scene.moving().begin(), scene.moving().end()) {}
 
 void PastStates::read(std::int64_t tick, std::span<const RigidState> truth, std::span<const std::uint32_t> moved,
-                      std::span<const DrivenContact> told) noexcept {
+                      std::span<const DrivenContact> signalled) noexcept {
   for (const std::uint32_t i : moved)
     if (std::exchange(alike_[i], std::uint8_t{0}) == kKept) unsettled_.push_back(i);
   if (count_ > 0 && tick - ticks_[newest_] < spacing_) return;
@@ -328,7 +328,7 @@ void PastStates::read(std::int64_t tick, std::span<const RigidState> truth, std:
   std::erase_if(unsettled_, [&](std::uint32_t i) {
     RigidState& kept = states_[i * kKept + newest_];
     kept = truth[i];
-    if (!told.empty()) kept.contact = told[i];
+    if (!signalled.empty()) kept.contact = signalled[i];
     return ++alike_[i] == kKept;
   });
 }

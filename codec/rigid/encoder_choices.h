@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the encoder of rigid objects chooses, and what it looks at for that: accelerations, forces that sink, the ratio of an error
-/// to its bounds; from these the velocity it tells, how long an update is smoothed, and which predictor. A decoder reads the choices. Internal to the library.
+/// What the encoder of rigid objects chooses, and what it looks at for that: accelerations, forces that decay, the ratio of an error
+/// to its bounds; from these the velocity it sends, how long an update is smoothed, and which predictor. A decoder reads the choices. Internal to the library.
 #pragma once
 
 #include <array>
@@ -105,7 +105,7 @@ class Acceleration {
 };
 
 // ==== force trend ====
-// How fast the forces on objects sink, and with them what may be wrong: an error that is inside its bound now may not be in a few
+// How fast the forces on objects decay, and with them what may be wrong: an error that is inside its bound now may not be in a few
 // milliseconds.
 
 class ForceTrend {
@@ -116,7 +116,7 @@ class ForceTrend {
   /// The contacts of a tick, after those before it.   time O(contacts), about 30 ns each; no allocation
   void read(std::int64_t tick, std::span<const RigidSample> samples, const Contacts& contacts) noexcept;
   /// [1/s] the part of the least force on the object that goes per second; 0 if it grows, or was not there two ticks ago
-  double sinking(std::uint32_t object) const noexcept;
+  double relative_decay_rate(std::uint32_t object) const noexcept;
 
  private:
   const Scene& scene_;
@@ -133,10 +133,10 @@ class ErrorRatio {
  public:
   static constexpr std::size_t kMostContacts = 8;  ///< of the object; those after them are not looked at
 
-  /// in  triggers  widened;  truth  pose of the object;  sinking  ForceTrend, of all its contacts
+  /// in  triggers  widened;  truth  pose of the object;  decay_rate  ForceTrend, of all its contacts
   /// time O(contacts), about 30 ns for each of the object's
   ErrorRatio(std::uint32_t object, const Pose& truth, const Contacts& contacts, const RigidTriggers& triggers,
-             double sinking = 0) noexcept;
+             double decay_rate = 0) noexcept;
 
   /// in   moved  [m], turned  [rad] from the true pose to the shown one, world frame;  later  [s] from now
   /// out  1: as large as is permitted then.   time about 20 ns
@@ -148,11 +148,11 @@ class ErrorRatio {
     Vec3 normal;        // zero: all directions count
     double depth;       // [m] of the probe below the face: what a tilt of the face turns
     double per_metre;   // ratio per metre of error at the point
-    double least;       // what a force that sinks leaves of what is permitted
+    double least;       // what a force that decays leaves of what is permitted
     double per_radian;  // ratio per radian of the object
   };
 
-  double per_metre_, per_radian_, sinking_;
+  double per_metre_, per_radian_, decay_rate_;
   std::array<Touch, kMostContacts> touches_;
   std::size_t count_ = 0;
 };
@@ -169,7 +169,7 @@ class ErrorRatio {
 // x = y - y^2/6, at most 1, with y = sqrt(2 B)/tau, is within 7 % of that. For small B an update then lasts 1 + sqrt(2) times as long as
 // with s = 0. What the truth really does decides how long it lasts, never whether a bound holds.
 
-/// The velocities to tell, less the true ones [m/s, rad/s].   time about 30 ns
+/// The velocities to send, less the true ones [m/s, rad/s].   time about 30 ns
 Acceleration::Motion look_ahead_velocity(const Acceleration::Motion& acceleration, const ErrorRatio& ratio) noexcept;
 
 // ==== smoothing choice ====
@@ -182,20 +182,20 @@ struct SmallError {
 
 /// What is known of an update's error in the ticks to come:
 ///   e(t) = offset (1 - t/T) + error + drift t - acceleration departure(t)
-struct UpdateCourse {
+struct ErrorTrajectory {
   SmallError offset;                  ///< from the update's pose to the one shown when it comes: what is left to go
   SmallError error;                   ///< of the update's pose
-  Acceleration::Motion drift;         ///< the velocities told, less the true ones
+  Acceleration::Motion drift;         ///< the velocities sent, less the true ones
   Acceleration::Motion acceleration;  ///< of the truth
 };
 
 /// `smoothing_exp`: the longest T = 2^smoothing_exp ticks, of at most 16 ms, during which the error stays inside its bounds; 0 if even two ticks are
 /// too long.
 /// time O(contacts), about 0.3 us with one
-std::uint8_t longest_smoothing_exp(const UpdateCourse& course, const ErrorRatio& ratio, std::uint32_t tick_rate) noexcept;
+std::uint8_t longest_smoothing_exp(const ErrorTrajectory& trajectory, const ErrorRatio& ratio, std::uint32_t tick_rate) noexcept;
 
 // ==== driven choice ====
-// What an update would tell of the device that drives an object: where it touches, and the drag that explains how the object moved of late.
+// What an update would signal of the device that drives an object: where it touches, and the drag that explains how the object moved of late.
 // spec/guide.md section 3. Informative: an encoder's choice, which no bound depends on.
 
 class DevicePath;
@@ -205,10 +205,10 @@ class DrivenChoice {
   /// pre  `scene` and `path` outlive this, and the scene has driven objects.   allocates
   DrivenChoice(const Scene& scene, const DevicePath& path);
 
-  /// Write what is told of each object; nothing where no device drives it, or one that is not that of the path.
+  /// Write what is signalled of each object; nothing where no device drives it, or one that is not that of the path.
   /// time O(moving objects + contacts), 0.1 us each; no allocation
   void read(std::int64_t tick, std::span<const RigidSample> samples, const Contacts& contacts,
-            std::span<DrivenContact> told) noexcept;
+            std::span<DrivenContact> signalled) noexcept;
 
  private:
   static constexpr std::size_t kWindow = 4;  // ticks over which the drag is looked at
@@ -233,7 +233,7 @@ class DrivenChoice {
 // ==== predictor choice ====
 // Which predictor an update chooses: the one that would have served longest of late. Each is started from true states of the last 150 ms
 // and held against the truth of now, from the youngest start back until one would have left its bounds; the device's motion, which takes
-// longer to work out, from where the best of the others would have left them, and not at all where it has in fact served for longer than
+// longer to compute, from where the best of the others would have left them, and not at all where it has in fact served for longer than
 // that. What a device touches is predicted by it or linearly. Informative: an encoder's choice, which no bound depends on. Internal to the
 // library.
 
@@ -252,10 +252,10 @@ class PastStates {
   explicit PastStates(const Scene& scene);
 
   /// The truth of a tick, after those before it.
-  /// in   moved  objects that are not what they were in the tick before;  told  of the device that drives them; empty: of none
+  /// in   moved  objects that are not what they were in the tick before;  signalled  of the device that drives them; empty: of none
   /// time O(objects that have moved of late), about 10 ns each, no allocation
   void read(std::int64_t tick, std::span<const RigidState> truth, std::span<const std::uint32_t> moved,
-            std::span<const DrivenContact> told = {}) noexcept;
+            std::span<const DrivenContact> signalled = {}) noexcept;
   /// The n-th youngest state that predictors are started from; nothing: there is none, or it says nothing of `now`.
   std::optional<RigidState> start(std::uint32_t object, std::int64_t now, std::size_t n) const noexcept;
 
@@ -275,13 +275,13 @@ class PredictorChoice {
   /// pre  both outlive this, and the scene has motion constants
   PredictorChoice(const Scene& scene, const PastStates& past) : scene_(scene), past_(&past), predictor_(scene) {}
 
-  /// The receiver's device, and a past with what is told of it.   RigidPredictor::know
+  /// The receiver's device, and a past with what is signalled of it.   RigidPredictor::know
   void know(const DevicePath& path, const PastStates& past) {
     past_ = &past;
     predictor_.know(path);
   }
 
-  /// in   truth       the object's state of now; where a device drives it, its contact is told
+  /// in   truth       the object's state of now; where a device drives it, its contact is signalled
   /// in   is_touched  by a device, known or not;  current  the update that it replaces
   /// time < 2 us; where a device drives the object 0.1 us more for each tick of the path looked at, most often 50; no allocation
   Predictor choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted, bool is_touched,

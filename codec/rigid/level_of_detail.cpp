@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kHysteresis = 1.15;  // a level rises only where a distance so many times smaller would ask for it, too
 constexpr double kScan = 0.2;         // [s] for all objects
-constexpr double kStep = 1.0 / 16;    // of the distance within which objects are told in full
+constexpr double kStep = 1.0 / 16;    // of the distance within which objects are sent in full
 
 double square(double v) noexcept { return v * v; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How exactly a client is told of each rigid object: by its distance from where the client looks from. spec/44-interest.md section 1.
-/// Informative: an encoder's choice, which it tells. Internal to the library.
+/// How exactly each rigid object is sent to a client: by its distance from where the client looks from. spec/44-interest.md section 1.
+/// Informative: an encoder's choice, which it signals. Internal to the library.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class LevelsOfDetail {
   /// pre  `scene` outlives this and has interest.   allocates one byte per object
   explicit LevelsOfDetail(const Scene& scene);
 
-  /// Places [m] that the client looks from, kMostPlaces at most; what is not finite does not count. Of none it is told of nothing; before the
+  /// Places [m] that the client looks from, kMostPlaces at most; what is not finite does not count. Without any it is sent nothing; before the
   /// first call of all, in full.
   void look_from(std::span<const Vec3> places) noexcept;
 

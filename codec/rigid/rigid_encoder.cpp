@@ -115,9 +115,9 @@ void RigidEncoder::set_link(const LinkState& link) noexcept {
 /// The truth of this tick, and what the receiver's device means for it.
 void RigidEncoder::take() noexcept {
   if (driven_) {
-    if (loses_more_) std::ranges::fill(driven_->told, DrivenContact{});
-    else driven_->choice.read(truth_.tick(), truth_.samples(), truth_.contacts(), driven_->told);
-    driven_->past.read(truth_.tick(), truth_.states(), scene_.moving(), driven_->told);
+    if (loses_more_) std::ranges::fill(driven_->signalled, DrivenContact{});
+    else driven_->choice.read(truth_.tick(), truth_.samples(), truth_.contacts(), driven_->signalled);
+    driven_->past.read(truth_.tick(), truth_.states(), scene_.moving(), driven_->signalled);
   }
   wake();
 }
@@ -140,7 +140,7 @@ bool RigidEncoder::is_touched(std::uint32_t object) const noexcept {
 RigidState RigidEncoder::truth_of(std::uint32_t object) const noexcept {
   RigidState out = truth_.state(object);
   out.tick = truth_.tick();
-  if (driven_) out.contact = driven_->told[object];
+  if (driven_) out.contact = driven_->signalled[object];
   out.lod = lod_of(object);
   return out;
 }
@@ -167,7 +167,7 @@ void RigidEncoder::wake() noexcept {
   awake_.wake_due(truth_.tick());
 }
 
-/// Not for what the client is not told of.
+/// Not for what is not signalled to the client.
 void RigidEncoder::wake(std::uint32_t object) noexcept {
   if (!levels_ || !levels_->is_left_out(object)) awake_.wake(object);
 }
@@ -190,7 +190,7 @@ bool RigidEncoder::stands_still(const RigidState& state) const noexcept {
   return now.position == end.position && now.rotation == end.rotation;
 }
 
-/// Neither the object nor its prediction moves, and nothing is left to tell: nothing changes before its heartbeat.
+/// Neither the object nor its prediction moves, and nothing is left to send: nothing changes before its heartbeat.
 std::optional<std::int64_t> RigidEncoder::sleeps_until(std::uint32_t object) noexcept {
   const Sent& sent = sent_[object];
   if (levels_ && lod_of(object) != sent.path.state.lod) return std::nullopt;
@@ -211,7 +211,7 @@ void RigidEncoder::sleep() noexcept {
   awake_.sleep([this](std::uint32_t object) { return sleeps_until(object); });
 }
 
-// ==== what to tell ====
+// ==== what to send ====
 
 /// The largest haptic_ratio() of the contacts on the object; with the rule `fixed` 0 or infinite.
 double RigidEncoder::haptic_ratio_of(std::uint32_t object, const RigidPose& shown) const noexcept {
@@ -240,17 +240,17 @@ RigidDecision RigidEncoder::decide_alone(const SmoothedPath& path, bool early) c
   const std::uint32_t object = path.object;
   const std::int64_t tick = truth_.tick();
   const RigidState& truth = truth_.state(object);
-  const RigidPose course = predictor_.shown(object, path.state, tick);
-  const RigidPose shown = smoothed(course, path.state, path.offset, tick);
-  const double felt = haptic_ratio_of(object, shown);
+  const RigidPose predicted = predictor_.shown(object, path.state, tick);
+  const RigidPose shown = smoothed(predicted, path.state, path.offset, tick);
+  const double force_ratio = haptic_ratio_of(object, shown);
   const Bounds& bounds = bounds_of(object);
   RigidDecision out;
-  if (felt > bounds.widening && can_improve(object, shown)) out.reason = Reason::haptic;
-  else if (!within(bounds.visual, shown, truth) || (is_smoothing(path.state, tick) && !within(bounds.visual, course, truth)))
+  if (force_ratio > bounds.widening && can_improve(object, shown)) out.reason = Reason::haptic;
+  else if (!within(bounds.visual, shown, truth) || (is_smoothing(path.state, tick) && !within(bounds.visual, predicted, truth)))
     out.reason = Reason::visual;
   else if (heartbeat_ > 0 && tick - path.state.tick >= heartbeat_) out.reason = Reason::heartbeat;
   out.is_early =
-      early && (!within(bounds.early, shown, truth) || (felt > early_ * bounds.widening && can_improve(object, shown)));
+      early && (!within(bounds.early, shown, truth) || (force_ratio > early_ * bounds.widening && can_improve(object, shown)));
   return out;
 }
 
@@ -327,7 +327,7 @@ Predictor RigidEncoder::chosen(std::uint32_t object, const RigidState& truth, co
   return choice_->choose(object, truth, permitted, is_touched(object), sent_[object].path.state);
 }
 
-/// The true state with the velocities that an update is to tell.   pre  it is predicted linearly
+/// The true state with the velocities that an update is to send.   pre  it is predicted linearly
 RigidState RigidEncoder::with_look_ahead(const RigidState& truth, std::uint32_t object, const Acceleration::Motion& acceleration,
                                 const ErrorRatio& ratio) const noexcept {
   if (truth_.acceleration() == nullptr || loses_) return truth;
@@ -339,7 +339,7 @@ RigidState RigidEncoder::with_look_ahead(const RigidState& truth, std::uint32_t 
 }
 
 /// In the ticks after an update whose offset leads to `kept` now.
-UpdateCourse RigidEncoder::course_of(const RigidState& state, const RigidPose& kept, const RigidSample& truth,
+ErrorTrajectory RigidEncoder::error_trajectory(const RigidState& state, const RigidPose& kept, const RigidSample& truth,
                                      const Acceleration::Motion& acceleration) const noexcept {
   const Pose own = to_pose({state.position, state.rotation}, scene_.grid.position);
   const Acceleration::Motion drift{to_vector(state.velocity, scene_.grid.velocity) - truth.velocity,
@@ -356,12 +356,12 @@ void RigidEncoder::choose_smoothing(Pending& update, CodedUpdate& coded, const A
   const RigidPose own{tried.position, tried.rotation};
   const PoseOffset offset = offset_between(own, shown);
   tried.smoothing_exp = 1;
-  tried.retained = update.reason == Reason::haptic ? 1 : 0;  // all of it is what is felt
+  tried.retained = update.reason == Reason::haptic ? 1 : 0;  // all of it acts on the rendered force
   for (; tried.retained < 4; ++tried.retained) {
     const RigidPose kept = smoothed(own, tried, part_kept(offset, tried.retained), tried.tick);
     const Bounds& bounds = bounds_of(object);
     if (!within(bounds.visual, kept, truth_.state(object)) || haptic_ratio_of(object, kept) > bounds.widening) continue;
-    tried.smoothing_exp = longest_smoothing_exp(course_of(tried, kept, truth_.samples()[object], acceleration), ratio, scene_.tick_rate);
+    tried.smoothing_exp = longest_smoothing_exp(error_trajectory(tried, kept, truth_.samples()[object], acceleration), ratio, scene_.tick_rate);
     if (tried.smoothing_exp == 0) return;
     update.after.path.state = tried;
     coded.smoothing_exp = tried.smoothing_exp;
@@ -383,12 +383,12 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
   const Predictor predictor = choice_ ? chosen(object, truth, bounds) : Predictor::linear;
   const bool is_linear = predictor == Predictor::linear;
   const ErrorRatio ratio(object, truth_.samples()[object].pose, truth_.contacts(), bounds,
-                         truth_.force_trend() != nullptr ? truth_.force_trend()->sinking(object) : 0);
+                         truth_.force_trend() != nullptr ? truth_.force_trend()->relative_decay_rate(object) : 0);
   const bool looks_ahead = truth_.acceleration() != nullptr && is_linear;
   const auto acceleration = looks_ahead ? truth_.acceleration()->of(object) : Acceleration::Motion{};
-  RigidState told = is_linear ? with_look_ahead(truth, object, acceleration, ratio) : truth;
-  told.predictor = predictor;
-  TACTUS_TRY(CodedUpdate coded, quantise(update, prediction, told));
+  RigidState signalled = is_linear ? with_look_ahead(truth, object, acceleration, ratio) : truth;
+  signalled.predictor = predictor;
+  TACTUS_TRY(CodedUpdate coded, quantise(update, prediction, signalled));
   const bool is_shown = sent_[object].path.state.lod != kOutOfInterest;
   if (truth_.acceleration() != nullptr && !request.head.key && is_shown) choose_smoothing(update, coded, acceleration, ratio);
   return coded;
@@ -396,7 +396,7 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
 
 /// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
 /// coarse for the permitted force error, or the way too long for one update, the nearest place that it can name.
-Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction, const RigidState& told) const noexcept {
+Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction, const RigidState& signalled) const noexcept {
   const std::uint32_t object = update.object;
   const RigidState& truth = truth_.state(object);
   const std::uint8_t dof = scene_.objects[object].dof;
@@ -409,18 +409,18 @@ Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& pr
     CodedUpdate coded{.reason = update.reason,
                       .level = static_cast<std::uint8_t>(level),
                       .residual = quantise_pose(prediction.pose, truth, dof, level, scene_.grid),
-                      .predictor = static_cast<std::uint8_t>(told.predictor),
+                      .predictor = static_cast<std::uint8_t>(signalled.predictor),
                       .lod = static_cast<std::uint8_t>((lod_of(object) - prediction.base.lod) & 7)};
-    if (told.predictor == Predictor::driven) tell_contact(prediction.base, told.contact, coded);
-    quantise_motion(predictor_, prediction, told, dof, coded);
+    if (signalled.predictor == Predictor::driven) set_contact(prediction.base, signalled.contact, coded);
+    quantise_motion(predictor_, prediction, signalled, dof, coded);
     const auto state = reconstruct(predictor_, prediction, truth_.tick(), coded, scene_.grid);
     if (!state) return fail(Errc::internal, "R-RIG-6");
     const RigidPose shown{state->position, state->rotation};
     if (level > 0 && !within(bounds.visual, shown, truth)) continue;
-    const double felt = haptic_ratio_of(object, shown);
-    if ((level > 0 || finest) && felt > bounds.widening) continue;
+    const double force_ratio = haptic_ratio_of(object, shown);
+    if ((level > 0 || finest) && force_ratio > bounds.widening) continue;
     update.after.path.state = *state;
-    if (felt <= kHapticFraction * bounds.widening) return coded;
+    if (force_ratio <= kHapticFraction * bounds.widening) return coded;
     finest = coded;
   }
   return *finest;  // that of level 0, if no other

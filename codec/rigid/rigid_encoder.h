@@ -78,10 +78,10 @@ class RigidEncoder {
     PoseThresholds visual, fixed, early;  // early: over which an object joins a packet
   };
   struct DrivenParts {
-    DrivenParts(const Scene& scene, const DevicePath& path) : choice(scene, path), past(scene), told(scene.objects.size()) {}
+    DrivenParts(const Scene& scene, const DevicePath& path) : choice(scene, path), past(scene), signalled(scene.objects.size()) {}
     DrivenChoice choice;
     PastStates past;
-    std::vector<DrivenContact> told;  // by object
+    std::vector<DrivenContact> signalled;  // by object
   };
 
   void take() noexcept;
@@ -108,11 +108,11 @@ class RigidEncoder {
   Predictor chosen(std::uint32_t object, const RigidState& truth, const RigidTriggers& bounds) const noexcept;
   RigidState with_look_ahead(const RigidState& truth, std::uint32_t object, const Acceleration::Motion& acceleration,
                     const ErrorRatio& ratio) const noexcept;
-  UpdateCourse course_of(const RigidState& state, const RigidPose& kept, const RigidSample& truth,
+  ErrorTrajectory error_trajectory(const RigidState& state, const RigidPose& kept, const RigidSample& truth,
                          const Acceleration::Motion& acceleration) const noexcept;
   void choose_smoothing(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
                    const ErrorRatio& ratio) const noexcept;
-  Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction, const RigidState& told) const noexcept;
+  Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction, const RigidState& signalled) const noexcept;
   Result<CodedUpdate> code(Pending& update, const EncodeRequest<RigidStates>& request) const noexcept;
   Result<Payload> code_all(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
   bool shares() const noexcept;

@@ -199,7 +199,7 @@ void DrivenBody::hold(const Scene& scene, const DrivenConstants::Body& body, con
   rotation_ = renormalise(multiply(small_turn(half), rotation_));
 }
 
-/// What the ground bears of the object, over its mass [2^-16 m/s^2].   in  pull  world frame
+/// What the ground supports of the object, over its mass [2^-16 m/s^2].   in  pull  world frame
 std::int64_t DrivenBody::load(const Vec& pull) const noexcept {
   Vec sum;
   for (std::size_t i = 0; i < 3; ++i) sum[i] = limited(pull[i] + gravity_[i], 30);

@@ -37,7 +37,7 @@ struct DrivenContact {
   friend bool operator==(const DrivenContact&, const DrivenContact&) = default;
 };
 
-/// Level of detail of an object that the client is not told of. spec/44-interest.md section 1
+/// Level of detail of an object that is not sent to the client. spec/44-interest.md section 1
 inline constexpr std::uint8_t kOutOfInterest = 7;
 
 /// Integer pose and motion of one rigid object at one tick. This is all that a decoder keeps per object.

@@ -22,7 +22,7 @@ const RigidModels& start_models() noexcept {
 
 namespace {
 
-/// What the pose residual tells of the velocities.
+/// What the pose residual implies for the velocities.
 RigidMotion expected_motion(const RigidPredictor& predictor, const RigidState& base, std::int64_t tick,
                             const CodedUpdate& update) noexcept {
   PoseError error;
@@ -81,7 +81,7 @@ std::array<std::int32_t, 7> numbers_of(const DrivenContact& c) noexcept {
 
 }  // namespace
 
-void tell_contact(const RigidState& base, const DrivenContact& contact, CodedUpdate& update) noexcept {
+void set_contact(const RigidState& base, const DrivenContact& contact, CodedUpdate& update) noexcept {
   const auto before = numbers_of(base.contact), now = numbers_of(contact);
   update.is_held = contact.is_held;
   for (std::size_t i = 0; i < now.size(); ++i) update.contact[i] = contact.is_held && i >= 3 ? 0 : now[i] - before[i];

@@ -153,9 +153,9 @@ void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uin
 /// Does the scene declare what this predictor needs? (R-RIG-7)
 bool is_declared(const Scene& scene, std::uint32_t object, std::uint8_t predictor) noexcept;
 
-/// The differences that tell `contact`.
-void tell_contact(const RigidState& base, const DrivenContact& contact, CodedUpdate& update) noexcept;
-/// What they tell.
+/// Set the differences that signal `contact`.
+void set_contact(const RigidState& base, const DrivenContact& contact, CodedUpdate& update) noexcept;
+/// The contact that they signal.
 DrivenContact contact_of(const RigidState& base, const CodedUpdate& update) noexcept;
 
 /// State of one object before a packet, and its predicted pose at the packet's tick.

@@ -16,7 +16,7 @@
 
 namespace tactus {
 
-/// Whether an object must be told, by what a receiver shows of it.
+/// Whether an object must be updated, by what a receiver shows of it.
 struct RigidDecision {
   Reason reason = Reason::request;  ///< this: no trigger has fired
   bool is_early = false;            ///< it would soon

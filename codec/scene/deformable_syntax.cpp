@@ -124,7 +124,7 @@ Result<void> parse_springs(ByteReader& in, std::uint64_t modes, DeformableObject
   return {};
 }
 
-/// The cluster of every vertex, told where it is not as expected.
+/// The cluster of every vertex, coded where it is not as expected.
 Result<void> parse_clusters(ByteReader& in, DeformableObject& object) {
   const std::uint64_t count = in.varint();
   const std::uint8_t blend = in.u8();

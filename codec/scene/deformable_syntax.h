@@ -26,7 +26,7 @@ Result<DeformableObject> parse_deformable(ByteReader& in, const DeformableRoom& 
 
 inline constexpr std::uint64_t kStiffnessRecord = 3;  ///< type of the extension record
 
-/// The whole record.   pre  the object tells its stiffness
+/// The whole record.   pre  the object declares its stiffness
 void write_stiffness(ByteWriter& out, std::uint8_t object, const DeformableObject& of);
 /// Into the object that the record names.
 /// in   in  the record's data; bytes after the known elements are skipped

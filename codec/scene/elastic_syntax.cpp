@@ -46,10 +46,10 @@ template <class Coder>
 void code_deformable(Coder& coder, DeformableBounds& mesh) {
   DeformableThresholds& t = mesh.thresholds;
   const unsigned bound_flags = (mesh.kept ? kKept : 0u) | (t.weber_fraction ? kHaptic : 0u);
-  const std::uint8_t told = coder.byte(static_cast<std::uint8_t>(bound_flags), kKept | kHaptic);
-  mesh.kept = (told & kKept) != 0;
+  const std::uint8_t flags = coder.byte(static_cast<std::uint8_t>(bound_flags), kKept | kHaptic);
+  mesh.kept = (flags & kKept) != 0;
   t.visual = coder.number(t.visual);
-  if (!(told & kHaptic)) {
+  if (!(flags & kHaptic)) {
     t.weber_fraction.reset();
     return;
   }

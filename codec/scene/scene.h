@@ -32,11 +32,11 @@ struct GridExponents {
   friend bool operator==(const GridExponents&, const GridExponents&) = default;
 };
 
-/// What is told of the forces on rigid objects. spec/45-load.md
+/// What is sent of the forces on rigid objects. spec/45-load.md
 struct LoadSpec {
   static constexpr std::uint8_t kMostUsers = 64, kMostExponent = 20;
   std::uint8_t force_exp = 10;  ///< forces are multiples of 2^-force_exp N, 0..20
-  std::uint8_t users = 1;       ///< whose forces are told, 0..64
+  std::uint8_t users = 1;       ///< whose forces are sent, 0..64
   friend bool operator==(const LoadSpec&, const LoadSpec&) = default;
 };
 
@@ -65,7 +65,7 @@ struct DrivenConstants {
   friend bool operator==(const DrivenConstants&, const DrivenConstants&) = default;
 };
 
-/// Within which distances a client is told of rigid objects. spec/44-interest.md section 2
+/// Within which distances rigid objects are sent to a client. spec/44-interest.md section 2
 struct Interest {
   static constexpr std::uint32_t kMost = 0x7fffffff;
   std::uint32_t full = 1;   ///< x 2^-position m: so far away in full; at twice the distance bounds are twice as wide
@@ -78,13 +78,13 @@ struct SceneSpec {
   GridExponents grid;
   std::uint16_t max_extrapolation = 2000;     ///< ticks; an object without updates stops moving after so long
   std::uint8_t baseline_span = 1;             ///< how many of the newest states a receiver keeps as baselines, 1..64
-  bool is_smoothed = false;                      ///< updates of rigid objects tell how clients smooth their errors (rigid/curve.h)
+  bool is_smoothed = false;                      ///< updates of rigid objects signal how clients smooth their errors (rigid/curve.h)
   std::vector<RigidObject> objects;           ///< order is the wire order
   std::vector<DeformableObject> deformables;  ///< a stream without any spends no byte on them
   std::optional<LoadSpec> loads;              ///< of the objects that can move; none: a stream spends no byte on them
   std::optional<MotionConstants> motion;      ///< of the objects that can move; none: their velocities alone predict them
   std::optional<DrivenConstants> driven;      ///< of objects that a client's device moves; none: it predicts nothing
-  std::optional<Interest> interest;           ///< of clients in rigid objects; none: they are told of all, in full
+  std::optional<Interest> interest;           ///< of clients in rigid objects; none: they are sent all, in full
   std::optional<StreamBounds> bounds;         ///< error bounds that the sender guarantees; none: not declared
 };
 

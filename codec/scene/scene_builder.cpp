@@ -84,7 +84,7 @@ Result<std::optional<Interest>> interest_of(const std::optional<std::array<doubl
   return Interest{static_cast<std::uint32_t>(full / unit), static_cast<std::uint32_t>(reach / unit)};
 }
 
-/// Nothing: a constant cannot be told.
+/// Nothing: a constant cannot be declared.
 std::optional<DrivenConstants::Body> body_of(const DrivenPhysics& physics, std::uint32_t tick_rate) noexcept {
   constexpr double kMost = DrivenConstants::Body::kMost, kMost16 = 65535;
   bool fits = true;
@@ -276,7 +276,7 @@ SceneBuilder& SceneBuilder::elastic(ElasticPhysics physics) {
   return *this;
 }
 
-bool SceneBuilder::can_work_out(const ElasticPhysics& physics, std::size_t vertices) {
+bool SceneBuilder::can_compute(const ElasticPhysics& physics, std::size_t vertices) {
   return elastic_work(physics.body, vertices + physics.inner.size()) <= DecodeLimits().elastic_work;
 }
 

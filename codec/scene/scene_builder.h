@@ -17,8 +17,8 @@ namespace tactus {
 /// How rigid objects are coded. What is declared of it decides how a sender codes, and what clients show.
 enum class RigidProfile : std::uint8_t {
   thesis,  ///< linear dead reckoning from true velocities; clients jump to an update, or smooth what they show (Interpolation)
-  main,  ///< updates tell look-ahead velocities, to last longer, and how clients pass over to them: what is
-         ///< shown and felt does not jump, and the bounds hold on the way
+  main,  ///< updates send look-ahead velocities, to last longer, and how clients pass over to them: what is
+         ///< shown and rendered does not jump, and the bounds hold on the way
 };
 
 /// How the stream of a deformable object is coded.
@@ -38,14 +38,14 @@ struct DeformableCoding {
   ModeBasis basis{};             ///< main
   SpringBasis spring_basis{};    ///< main; with modes it takes the place of `basis`
   ClusterBasis cluster_basis{};  ///< main; with clusters it takes the place of both
-  /// [N/m] of each vertex, infinite where it does not move; empty: not told. What clients with delay render by (StiffnessReduction).
+  /// [N/m] of each vertex, infinite where it does not move; empty: not declared. What clients with delay render by (StiffnessReduction).
   std::vector<double> stiffness{};
 };
 
 /// What moves rigid objects that nothing touches. spec/40-rigid.md section 4
 struct MotionPhysics {
-  Vec3 gravity{};       ///< [m/s^2] world frame; 0: not told
-  double friction = 0;  ///< an object that slides is slowed down by this times |gravity|; 0: not told
+  Vec3 gravity{};       ///< [m/s^2] world frame; 0: not declared
+  double friction = 0;  ///< an object that slides is slowed down by this times |gravity|; 0: not declared
 };
 
 /// A box or anything like it that a client's device pushes or holds.
@@ -93,22 +93,22 @@ class SceneBuilder {
   /// How many states a receiver keeps as baselines, 1..64. Losing fewer packets than that in a row interrupts nothing.
   SceneBuilder& baselines(std::uint8_t count);
   SceneBuilder& rigid_profile(RigidProfile profile);
-  /// Tell the forces on all objects that can move: of their surroundings, and of so many users.
+  /// Send the forces on all objects that can move: of their surroundings, and of so many users.
   SceneBuilder& loads(const LoadSpec& loads);
   /// Let updates choose among predictors that know these constants. Both 0: none does.
   SceneBuilder& motion(const MotionPhysics& physics);
   /// Let a client predict from its own device where the rigid object added last goes. In sessions alone.
   SceneBuilder& driven(const DrivenPhysics& physics);
-  /// Whether these constants can be told: the coupling over the mass up to 4.2e6 s^-2, radii of inertia of 31 um to 1 m.
+  /// Whether these constants can be declared: the coupling over the mass up to 4.2e6 s^-2, radii of inertia of 31 um to 1 m.
   static bool can_drive(const DrivenPhysics& physics, std::uint32_t tick_rate) noexcept;
-  /// Let a client work out from its own device how the deformable object added last deforms. In sessions alone.
+  /// Let a client compute from its own device how the deformable object added last deforms. In sessions alone.
   SceneBuilder& elastic(ElasticPhysics physics);
   /// Whether every client accepts a body with so many vertices on its surface: about 10 000 in all if it is thin, 1300 of a cube.
-  static bool can_work_out(const ElasticPhysics& physics, std::size_t vertices);
+  static bool can_compute(const ElasticPhysics& physics, std::size_t vertices);
   /// Whether velocity Verlet is stable in the body's sub-steps, with steps of `step` [s] (R-ELA-5); true of the other methods.
   /// in   surface  [m] its vertices at rest.   pre  the body breaks no other rule
   static bool steps_stably(const ElasticPhysics& physics, std::span<const Vec3> surface, double step);
-  /// Let clients be told by distance [m]: of rigid objects within `full` of where a client looks from in full, with bounds twice as wide at
+  /// Send to clients by distance [m]: rigid objects within `full` of where a client looks from in full, with bounds twice as wide at
   /// twice the distance, and not at all of those beyond `reach`. For worlds that are larger than what one sees of them.
   SceneBuilder& interest(double full, double reach);
   /// Declare the bounds that hold at a client that gets every packet.

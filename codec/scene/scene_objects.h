@@ -58,7 +58,7 @@ struct DeformableThresholds {
   friend bool operator==(const DeformableThresholds&, const DeformableThresholds&) = default;
 };
 
-/// When the force on a rigid object must be told: once it is off by more than p max(|f|, floor).
+/// When the force on a rigid object must be sent: once it is off by more than p max(|f|, floor).
 struct LoadThresholds {
   double weber_fraction = 0.1;  ///< p
   double force_floor = 0.5;     ///< [N]

@@ -64,7 +64,7 @@ Result<std::span<const std::uint8_t>> ForceSender::encode(std::int64_t tick, con
   last_tick_ = tick;
   const std::array<std::int32_t, 3> wanted = to_grid(force);
   const std::array<std::int32_t, 3> shown = shown_at(state_, tick, tick_rate_);
-  // What the grid cannot tell apart is not sent.
+  // What the grid cannot distinguish is not sent.
   if (wanted == shown || is_within(force, to_newton(shown))) return std::span<const std::uint8_t>();
   ForceState next{.tick = tick, .force = wanted};
   if (coding_.predictor == ForcePredictor::linear && begun_) {

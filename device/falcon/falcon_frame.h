@@ -47,7 +47,7 @@ struct Reply {
   friend bool operator==(const Reply&, const Reply&) = default;
 };
 
-/// It asks to home, too, as every frame does: the axes that are homed are told only then.   time O(1), no allocation
+/// It asks to home, too, as every frame does: the axes that are homed are reported only then.   time O(1), no allocation
 Frame encode(const Request& request) noexcept;
 
 /// Replies out of USB IN transfers, which end anywhere. Bytes between frames are skipped; '<' always begins a frame.

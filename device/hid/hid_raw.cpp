@@ -33,14 +33,14 @@ std::vector<std::uint8_t> shown_descriptor(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// As the open device tells it; empty: it does not.
-std::vector<std::uint8_t> told_descriptor(int file) {
+/// As the open device reports it; empty: it does not.
+std::vector<std::uint8_t> read_descriptor(int file) {
   int size = 0;
-  hidraw_report_descriptor told{};
+  hidraw_report_descriptor report{};
   if (ioctl(file, HIDIOCGRDESCSIZE, &size) < 0) return {};
-  told.size = static_cast<std::uint32_t>(std::clamp(size, 0, HID_MAX_DESCRIPTOR_SIZE));
-  if (ioctl(file, HIDIOCGRDESC, &told) < 0) return {};
-  return {told.value, told.value + std::min<std::size_t>(told.size, HID_MAX_DESCRIPTOR_SIZE)};
+  report.size = static_cast<std::uint32_t>(std::clamp(size, 0, HID_MAX_DESCRIPTOR_SIZE));
+  if (ioctl(file, HIDIOCGRDESC, &report) < 0) return {};
+  return {report.value, report.value + std::min<std::size_t>(report.size, HID_MAX_DESCRIPTOR_SIZE)};
 }
 
 class RealPort final : public RawPort {
@@ -88,7 +88,7 @@ class RealBus final : public RawBus {
     if (!hid) return tl::unexpected(RawRefusal::failed);
     const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
     if (file < 0) return tl::unexpected(errno == EACCES || errno == EPERM ? RawRefusal::denied : RawRefusal::gone);
-    std::vector<std::uint8_t> descriptor = told_descriptor(file);
+    std::vector<std::uint8_t> descriptor = read_descriptor(file);
     ::close(file);
     Handle handle(hid->open_path(path.c_str()), hid->close);
     if (!handle || descriptor.empty()) return tl::unexpected(RawRefusal::failed);

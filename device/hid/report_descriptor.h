@@ -29,7 +29,7 @@ struct Field {
   std::uint32_t bit = 0;                             ///< where it begins behind the id; the lowest bit comes first
   std::uint8_t size = 0;                             ///< 1..32 bits
   std::int64_t logical_low = 0, logical_high = 0;    ///< what stands in the report; of an axis low < high
-  std::int64_t physical_low = 0, physical_high = 0;  ///< what that means, times 10^exponent units; as logical, if it is not told
+  std::int64_t physical_low = 0, physical_high = 0;  ///< what that means, times 10^exponent units; as logical, if it is not stated
   std::uint32_t unit = 0;
   std::int8_t exponent = 0;  ///< -8..7
 

@@ -18,7 +18,7 @@ constexpr Time kOpenTime = 2000 * kMillisecond;
 constexpr Time kStale = 20 * kMillisecond;  // a force that is asked for again is not older
 
 Capabilities capabilities_of(const std::string& id) {
-  constexpr double kNominal = 3;  // [N] the service does not tell; chosen, so that the device can hold it
+  constexpr double kNominal = 3;  // [N] the service does not report it; chosen, so that the device can hold it
   Capabilities out;
   out.name = "inverse3:" + id;
   out.model = "Haply Inverse3";

@@ -15,7 +15,7 @@ class Inverse3Backend final : public Backend {
   const char* title() const noexcept override { return "Haply Inverse3 (the vendor's service)"; }
   /// Nothing is asked of the service: it would begin to move forces.
   Listing list() const override;
-  /// in   which    device_id of the service; empty: the first that it tells of
+  /// in   which    device_id of the service; empty: the first that it names
   ///      options  service: HOST:PORT on this machine, 127.0.0.1:10001 otherwise
   /// time up to 2 s
   tl::expected<std::unique_ptr<Device>, Diagnostic> open(const std::string& which, const OpenOptions& options) const override;

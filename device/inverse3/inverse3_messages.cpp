@@ -50,7 +50,7 @@ class Handler : public nlohmann::json_sax<nlohmann::json> {
   bool binary(binary_t&) override { return false; }
   bool start_object(std::size_t) override {
     if (!is_allowed_here() || !enter()) return false;
-    if (depth_ == 3 && path_[0] == Key::inverse3) device_ = {}, told_ = 0;
+    if (depth_ == 3 && path_[0] == Key::inverse3) device_ = {}, received_ = 0;
     return true;
   }
   bool key(string_t& name) override {
@@ -72,7 +72,7 @@ class Handler : public nlohmann::json_sax<nlohmann::json> {
   bool is_impossible = false;
 
  private:
-  static constexpr unsigned kWhole = 7;  // all of a vector was told
+  static constexpr unsigned kWhole = 7;  // all of a vector was received
 
   bool enter() {
     if (depth_ == kMostDepth) return false;
@@ -116,12 +116,12 @@ class Handler : public nlohmann::json_sax<nlohmann::json> {
       default:
         return true;
     }
-    told_ |= 1u << (shift + static_cast<unsigned>(path_[4]) - static_cast<unsigned>(Key::x));
+    received_ |= 1u << (shift + static_cast<unsigned>(path_[4]) - static_cast<unsigned>(Key::x));
     return true;
   }
   bool end_device() {
     const bool is_wanted = !device_.id.empty() && (wanted_.empty() || device_.id == wanted_);
-    const unsigned position = told_ & kWhole, velocity = told_ >> 3;
+    const unsigned position = received_ & kWhole, velocity = received_ >> 3;
     if ((position != 0 && position != kWhole) || (velocity != 0 && velocity != kWhole)) return false;
     if (is_wanted && position == kWhole && !found) found = device_;
     return true;
@@ -131,7 +131,7 @@ class Handler : public nlohmann::json_sax<nlohmann::json> {
   std::array<Key, kMostDepth> path_{};  // the key within each object or array that is open
   std::size_t depth_ = 0;
   State device_;
-  unsigned told_ = 0;  // of the device: x, y, z of position, then of velocity
+  unsigned received_ = 0;  // of the device: x, y, z of position, then of velocity
 };
 
 char* put(char* at, std::string_view text) noexcept { return std::copy(text.begin(), text.end(), at); }

@@ -24,10 +24,10 @@ inline constexpr std::size_t kMostCommand = 256;     ///< [bytes]
 struct State {
   std::string id{};  ///< letters, digits, '-' and '_'
   Vec3 position{};   ///< [m]
-  Vec3 velocity{};   ///< [m/s] zero where it is not told
+  Vec3 velocity{};   ///< [m/s] zero where it is not reported
 };
 
-/// The device with this id, or the first. Nothing: the message tells of no such device.
+/// The device with this id, or the first. Nothing: the message names no such device.
 /// err  malformed R-DEV-5: no JSON, deeper than 32, larger than kMostMessage, or an id or a vector that is none; invalid R-DEV-6: a
 ///      number is not finite, or further than 10 m or 1000 m/s
 Result<std::optional<State>> read_state(std::string_view message, std::string_view id);

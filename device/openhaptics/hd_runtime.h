@@ -72,7 +72,7 @@ struct Runtime {
 // Samples and forces between the runtime's thread, which calls us 1000 times per second, and the thread that reads and writes the
 // device. No call locks or allocates; the runtime's thread never waits.
 
-/// One sample as the runtime tells it.
+/// One sample as the runtime reports it.
 struct RawSample {
   std::array<double, 3> position{};    ///< [mm]
   std::array<double, 3> velocity{};    ///< [mm/s]

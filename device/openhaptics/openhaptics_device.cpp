@@ -101,8 +101,8 @@ class OpenHapticsDevice final : public Device {
   Reading last_{};
 };
 
-/// The oldest error that the runtime has not told yet, in words; empty: none.
-std::string told_error(const Runtime& runtime) {
+/// The oldest error that the runtime has not returned yet, in words; empty: none.
+std::string pending_error(const Runtime& runtime) {
   const ErrorRecord record = runtime.get_error();
   if (record.code == 0) return {};
   const char* const text = runtime.error_text(record.code);
@@ -125,15 +125,15 @@ tl::expected<void, std::string> OpenHapticsDevice::start(const std::string& whic
   capabilities_.nominal_force = capabilities_.peak_force = most;
   capabilities_.rate = rate;
   capabilities_.paces = true;
-  if (std::string error = told_error(runtime_); !error.empty()) return tl::unexpected(std::move(error));
+  if (std::string error = pending_error(runtime_); !error.empty()) return tl::unexpected(std::move(error));
   if (!(most > 0 && most < 100) || !(rate > 0 && rate <= kMostRate))
     return tl::unexpected("it names " + std::to_string(most) + " N and " + std::to_string(rate) + " Hz");
   runtime_.enable(kForceOutput);
-  if (std::string error = told_error(runtime_); !error.empty()) return tl::unexpected(std::move(error));
+  if (std::string error = pending_error(runtime_); !error.empty()) return tl::unexpected(std::move(error));
   task_ = runtime_.schedule(&call, this, kPriority);
   is_scheduled_ = true;
   runtime_.start_scheduler();
-  if (std::string error = told_error(runtime_); !error.empty()) return tl::unexpected(std::move(error));
+  if (std::string error = pending_error(runtime_); !error.empty()) return tl::unexpected(std::move(error));
   return {};
 }
 
@@ -195,10 +195,10 @@ Result<void> OpenHapticsDevice::write(const GuardedForce& force) noexcept {
   return {};
 }
 
-tl::unexpected<Diagnostic> refuse(const std::string& which, const Error& error, const std::string& told) {
+tl::unexpected<Diagnostic> refuse(const std::string& which, const Error& error, const std::string& error_text) {
   return tl::unexpected(Diagnostic{.error = error,
                                    .file = which.empty() ? "openhaptics" : "openhaptics:" + which,
-                                   .detail = told,
+                                   .detail = error_text,
                                    .remedy =
                                        "check cable and power, that the vendor's own test program finds the device, its licence, "
                                        "and that the system shows it as a serial port (ttyACM) where the model needs that"});
@@ -256,10 +256,10 @@ tl::expected<std::unique_ptr<Device>, Diagnostic> OpenHapticsBackend::open(const
   const NumbersWithPoints numbers;
   TACTUS_TRY(const Runtime runtime, Runtime::load(options.runtime));
   const Handle handle = runtime.init_device(which.empty() ? nullptr : which.c_str());
-  const std::string told = told_error(runtime);
-  if (handle == kNoDevice || !told.empty()) {
+  const std::string error_text = pending_error(runtime);
+  if (handle == kNoDevice || !error_text.empty()) {
     if (handle != kNoDevice) runtime.disable_device(handle);
-    return refuse(which, fail(Errc::io, "R-DEV-2").value(), told);
+    return refuse(which, fail(Errc::io, "R-DEV-2").value(), error_text);
   }
   auto device = std::make_unique<OpenHapticsDevice>(runtime, handle);
   if (const auto started = device->start(which); !started)

@@ -16,7 +16,7 @@ class OpenHapticsBackend final : public Backend {
  public:
   const char* name() const noexcept override { return "openhaptics"; }
   const char* title() const noexcept override { return "Touch, Touch X, Phantom (the vendor's runtime)"; }
-  /// Looks whether the runtime is installed, without loading it: only that can tell which devices there are.
+  /// Looks whether the runtime is installed, without loading it: only that knows which devices there are.
   Listing list() const override;
   /// in   which    the device's name in the vendor's configuration; empty: its default device
   ///      options  runtime: the library

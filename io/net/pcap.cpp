@@ -62,7 +62,7 @@ Result<PcapWriter> PcapWriter::create(std::ostream& out) {
   w.u16(kMajor);
   w.u16(kMinor);
   w.u32(0);  // time zone
-  w.u32(0);  // accuracy of time stamps: not told
+  w.u32(0);  // accuracy of time stamps: not stated
   w.u32(kSnapLength);
   w.u32(kLinkTypeRaw);
   TACTUS_CHECK(writer.put_record());

@@ -40,7 +40,7 @@ class RateLimit {
 /// that floods keeps out one in 256 others. 6 kB, whoever sends; some 10 ns.
 class StrangersLimit {
  public:
-  /// in   secret  64 bits from the system, that nobody else can tell: else hosts could be chosen that share the limit of another one
+  /// in   secret  64 bits from the system, that nobody else can guess: else hosts could be chosen that share the limit of another one
   explicit StrangersLimit(std::uint64_t secret) : secret_(secret), hosts_(kHosts) {}
   /// in   now  [us]
   bool take(std::uint64_t now, const Address& from, std::size_t bytes) noexcept;

@@ -63,7 +63,7 @@ class UdpSocket {
 
   /// Room for datagrams that wait for receive(): some 700 bytes for a small one.   out  [bytes] that the system gives
   std::size_t ask_room(std::size_t bytes) noexcept;
-  std::uint64_t dropped() const noexcept;  ///< datagrams that found no room; 0 where the system does not tell
+  std::uint64_t dropped() const noexcept;  ///< datagrams that found no room; 0 where the system does not report it
   /// The peer's machine answered to the last datagram that nobody listens there.   pre  made by connect()
   bool is_refused() const noexcept { return refused_; }
 

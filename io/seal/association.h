@@ -156,7 +156,7 @@ class Association {
   bool was_asked_ = false, was_changed_ = false, is_key_wrong_ = false;  // for a key; to the cipher, since then
   std::uint64_t sealed_ = 0, unauthentic_ = 0;
   std::uint64_t newest_ = 0,
-                window_ = 0;  // bit i: number newest_ - i was heard. To tell replays from forgeries; GnuTLS has its own
+                window_ = 0;  // bit i: number newest_ - i was heard. To distinguish replays from forgeries; GnuTLS has its own
 };
 
 }  // namespace tactus::seal

@@ -32,7 +32,7 @@ struct Counters {
   std::uint64_t sealed = 0;       ///< records with a datagram of the session
   std::uint64_t opened = 0;       ///< the same, heard
   std::uint64_t unauthentic = 0;  ///< records dropped: forged, damaged, or of an association before
-  std::uint64_t replayed = 0;     ///< records dropped that had been heard, or were too old to tell
+  std::uint64_t replayed = 0;     ///< records dropped that had been heard, or were too old to know
   std::uint64_t strangers = 0;    ///< datagrams dropped that belong to no association and no handshake, or are no record
   std::uint64_t cookies = 0;      ///< answers to addresses that had not proven themselves
   std::uint64_t limited = 0;      ///< datagrams dropped before anything was done: their sender said too many
@@ -59,7 +59,7 @@ class Key {
   std::string_view name() const noexcept { return {name_.data(), name_size_}; }
   std::span<const std::uint8_t, kSecret> secret() const noexcept { return secret_; }
   static bool is_name(std::string_view text) noexcept;
-  friend bool operator==(const Key& a, const Key& b) noexcept;  ///< of secrets in a time that does not tell where they differ
+  friend bool operator==(const Key& a, const Key& b) noexcept;  ///< of secrets in a time that does not depend on where they differ
 
   Key(Key&& other) noexcept;
   Key& operator=(Key&& other) noexcept;

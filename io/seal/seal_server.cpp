@@ -23,7 +23,7 @@ constexpr std::size_t kAmplification = 3;       // to an address that has not pr
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Of a ClientHello: tells one handshake of an address from the next.
+/// Of a ClientHello: distinguishes one handshake of an address from the next.
 using Random = std::array<std::uint8_t, 32>;
 
 struct Peer {

@@ -50,7 +50,7 @@ class Server {
   /// Close the associations that nobody needs and that are older than 10 s.
   void keep_only(std::uint64_t now, const std::function<bool(std::uint64_t peer)>& is_needed);
   void close() noexcept;  ///< all
-  /// Other users from now on.   out  peers whose user is gone or has another key: they were told so, and are closed
+  /// Other users from now on.   out  peers whose user is gone or has another key: they were sent an alert, and are closed
   std::vector<std::uint64_t> replace(KeyList keys);
   /// Whose association it is, valid until replace(); null: unknown.   time O(peers)
   const KeyList::User* user_of(std::uint64_t peer) const noexcept;

@@ -57,7 +57,7 @@ class ArrayWriter {
   Result<void> take_lanes();
   Result<void> add_lane(std::string where, std::span<const double> values, std::size_t width);
   void note_missing(const Lane& lane);
-  void note_mended(const Lane& lane);
+  void note_repaired(const Lane& lane);
   Result<void> find_rate();
   Result<void> take_contacts();
   double off_grid(double rate) const;
@@ -102,7 +102,7 @@ Result<void> ArrayWriter::take_times() {
   return {};
 }
 
-/// As one of a table: the first quantity that is there tells whether rows with one time are samples.
+/// As one of a table: the first quantity that is there shows whether rows with one time are samples.
 CsvRow ArrayWriter::row_of(std::size_t row) const {
   CsvRow out{.line = row, .time = arrays_.time[row], .bytes = 0, .segment = {}, .values = {CsvValue{}}};
   std::span<const double> values;
@@ -129,7 +129,7 @@ Result<void> ArrayWriter::spread_groups() {
   CsvMapping mapping;
   mapping.tick_rate = arrays_.tick_rate;
   CsvNamedPlan plan;
-  plan.time_is_told = true;
+  plan.time_is_stated = true;
   const auto pace = find_pace(some, mapping, plan);
   if (pace && pace->period > 0) {
     EvenTimes even(*pace);
@@ -161,7 +161,7 @@ Result<void> ArrayWriter::add_lane(std::string where, std::span<const double> va
     return fail(Errc::malformed, "R-CSV-4");
   }
   note_missing(lane);
-  if (width == 4) note_mended(lane);
+  if (width == 4) note_repaired(lane);
   lane.track =
       SampleTrack<std::int64_t>({.gap = arrays_.gap * kSecond, .same = kOnGrid * kSecond / rate_, .tick = kSecond / rate_});
   lanes_.push_back(std::move(lane));
@@ -186,7 +186,7 @@ void ArrayWriter::note_missing(const Lane& lane) {
   }
 }
 
-void ArrayWriter::note_mended(const Lane& lane) {
+void ArrayWriter::note_repaired(const Lane& lane) {
   constexpr double kRounding = 1e-3;  // of rotations that are written with few digits
   for (const std::size_t row : lane.rows) {
     const auto q = lane.values.subspan(4 * rows_[row], 4);

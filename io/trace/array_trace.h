@@ -32,7 +32,7 @@ struct SampledObject {
 struct SampledUser {
   std::string name;
   std::span<const double> device{};    ///< T x 3 [m] world
-  std::span<const double> rotation{};  ///< T x 4 of the device, w x y z; empty: it does not tell
+  std::span<const double> rotation{};  ///< T x 4 of the device, w x y z; empty: it is not known
   std::span<const double> force{};     ///< T x 3 [N] on the user, world
 };
 

@@ -64,7 +64,7 @@ bool comes_before(const std::string& a, const std::string& b) {
   return a.size() - i < b.size() - j;
 }
 
-/// Time of the first message if a file's summary or its first message tells it.
+/// Time of the first message if a file's summary or its first message states it.
 std::optional<std::uint64_t> start_of(const std::string& path) {
   auto source = ByteSource::open_file(path);
   if (!source) return std::nullopt;

@@ -33,7 +33,7 @@ struct RecordingFiles {
 enum class MissingFiles : std::uint8_t { refuse, leave_out };
 
 /// The files behind `path`: itself, or, of a folder or its metadata.yaml, what that lists, in order of the times of their first messages
-/// where all tell them, else as listed. A folder without metadata.yaml: its .mcap files in order of their names and numbers, with a note.
+/// where all state them, else as listed. A folder without metadata.yaml: its .mcap files in order of their names and numbers, with a note.
 /// err  io R-TRC-1: a file that metadata.yaml lists is missing; unsupported R-TRC-2: no bag, or one of another storage, is in the folder;
 ///      unsupported R-TRC-7: a compression that is not read; limit_exceeded R-TRC-5: over 16 MiB of metadata.yaml, or 4096 files
 tl::expected<RecordingFiles, Diagnostic> files_of(const std::string& path, MissingFiles missing = MissingFiles::refuse);

@@ -22,7 +22,7 @@ class ByteSource {
   /// pre  `bytes` outlive the source.
   static ByteSource over_memory(std::span<const std::uint8_t> bytes) noexcept;
 
-  /// If the first bytes are those of a zstd or LZ4 file, read() unpacks from now on. A name tells nothing: only the bytes do.
+  /// If the first bytes are those of a zstd or LZ4 file, read() unpacks from now on. A name says nothing: only the bytes do.
   /// A frame that ends early ends the input.   pre  nothing was read.   err  io R-TRC-1
   Result<Compression> unpack();
 

@@ -97,7 +97,7 @@ std::optional<std::uint64_t> announced_size(Compression compression, std::span<c
   LZ4F_frameInfo_t info{};
   std::size_t consumed = frame.size();
   if (!context || LZ4F_isError(LZ4F_getFrameInfo(context.get(), &info, frame.data(), &consumed)) != 0) return std::nullopt;
-  return info.contentSize > 0 ? std::optional<std::uint64_t>(info.contentSize) : std::nullopt;  // 0: not told
+  return info.contentSize > 0 ? std::optional<std::uint64_t>(info.contentSize) : std::nullopt;  // 0: not stated
 }
 
 struct StreamDecompressor::Context {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Recordings in text form: import with a column mapping, export of any trace. What a table may look like: csv_reader.h, csv_header.h.
 ///
-/// Numbers keep their meaning: units and axes that the names of columns tell are taken, and refused where the mapping says otherwise. A
+/// Numbers keep their meaning: units and axes in the names of columns are taken, and refused where the mapping says otherwise. A
 /// value that is missing (an empty cell, NaN, "-", a rotation of length 0) is put between its neighbours, within CsvMapping::gap. Times that
-/// lie on no grid are resampled, and those of rows that come in groups are spread evenly (csv_pace.h). Whatever was decided is told in
+/// lie on no grid are resampled, and those of rows that come in groups are spread evenly (csv_pace.h). Whatever was decided is reported in
 /// CsvImport::notes.
 ///
 /// rule      class             broken when
@@ -67,7 +67,7 @@ struct CsvText {
 
 /// In which order the four columns of a rotation are listed.
 enum class QuaternionOrder : std::uint8_t {
-  by_names,  ///< as the columns are called; where they are not called after axes, as the first rotation tells: it is near none
+  by_names,  ///< as the columns are called; where they are not called after axes, as the first rotation shows: it is near none
   wxyz,
   xyzw,
 };

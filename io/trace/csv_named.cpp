@@ -153,17 +153,17 @@ std::string NamedPlanner::option_of(CsvDimension dimension) const {
 /// SI units in one of the column: from its name, a line of units, the mapping; of two that differ none.
 double NamedPlanner::scale_of(std::size_t column, CsvDimension dimension) {
   const std::string& name = plan_.names[column];
-  UnitInName told = unit_in_name(name, dimension);
+  UnitInName stated = unit_in_name(name, dimension);
   const char* source = "its name says";
-  if (!told.unit && !header_.units.empty() && !header_.units[column].empty()) {
+  if (!stated.unit && !header_.units.empty() && !header_.units[column].empty()) {
     const auto unit = unit_of(header_.units[column]);
-    if (unit && unit->dimension == dimension) told = {unit, {}}, source = "the line of units says";
-    else if (unit) told.foreign = header_.units[column];
+    if (unit && unit->dimension == dimension) stated = {unit, {}}, source = "the line of units says";
+    else if (unit) stated.foreign = header_.units[column];
   }
   const bool is_length = dimension == CsvDimension::length;
-  if (!told.unit && is_length && !header_.length_unit.empty())
+  if (!stated.unit && is_length && !header_.length_unit.empty())
     if (const auto unit = unit_of(header_.length_unit); unit && unit->dimension == dimension)
-      told.unit = unit, source = "the lines ahead of the names say";
+      stated.unit = unit, source = "the lines ahead of the names say";
   const std::string option = option_of(dimension);
   double wanted = is_length || dimension == CsvDimension::speed ? mapping_.length_scale : 1;
   bool is_given = mapping_.says_length && (is_length || dimension == CsvDimension::speed);
@@ -174,20 +174,20 @@ double NamedPlanner::scale_of(std::size_t column, CsvDimension dimension) {
     else wanted = unit->scale;
     is_given = true;
   }
-  if (told.unit) {
-    if (is_given && std::abs(wanted / told.unit->scale - 1) > 1e-9)
+  if (stated.unit) {
+    if (is_given && std::abs(wanted / stated.unit->scale - 1) > 1e-9)
       mistake(Errc::invalid_argument, "R-CSV-10", name,
-              "It is " + std::string(told.unit->name) + ", as " + source +
+              "It is " + std::string(stated.unit->name) + ", as " + source +
                   ": leave the option for its unit out, or correct the table.");
-    if (!is_given && told.unit->scale != 1)
-      plan_.notes.add("column " + name, "in " + std::string(told.unit->name) + ", as " + source);
-    return told.unit->scale;
+    if (!is_given && stated.unit->scale != 1)
+      plan_.notes.add("column " + name, "in " + std::string(stated.unit->name) + ", as " + source);
+    return stated.unit->scale;
   }
-  if (!told.foreign.empty() && !is_given) {
-    if (unit_of(told.foreign))
+  if (!stated.foreign.empty() && !is_given) {
+    if (unit_of(stated.foreign))
       mistake(Errc::invalid_argument, "R-CSV-10", name,
-              "'" + shown(told.foreign) + "' is a unit of another quantity: map another column, or rename it.");
-    plan_.notes.add("column " + name, "'" + shown(told.foreign) + "' is not taken for a unit");
+              "'" + shown(stated.foreign) + "' is a unit of another quantity: map another column, or rename it.");
+    plan_.notes.add("column " + name, "'" + shown(stated.foreign) + "' is not taken for a unit");
   }
   return wanted;
 }
@@ -204,7 +204,7 @@ void NamedPlanner::plan_time() {
   if (find(mapping_.time).empty()) split_fields(mapping_.time, ',', columns);
   if (columns.size() > 2) return mistake(Errc::malformed, "R-CSV-2", mapping_.time, "A time has one column, or two.");
   plan_.time = column(columns[0]);
-  plan_.time_is_told = !mapping_.time_unit.empty() || unit_in_name(plan_.names[*plan_.time], CsvDimension::time).unit ||
+  plan_.time_is_stated = !mapping_.time_unit.empty() || unit_in_name(plan_.names[*plan_.time], CsvDimension::time).unit ||
                        (!header_.units.empty() && unit_of(header_.units[*plan_.time]));
   if (mapping_.time_unit == kTickUnit) {
     if (mapping_.tick_rate == 0) return mistake(Errc::invalid_argument, "R-CSV-7", mapping_.time, "Give --tick-rate HZ.");
@@ -223,7 +223,7 @@ void NamedPlanner::plan_second_time(const std::string& name) {
   const std::size_t second = column(name);
   auto unit = unit_in_name(plan_.names[second], CsvDimension::time).unit;
   if (!unit && !header_.units.empty())
-    if (const auto told = unit_of(header_.units[second]); told && told->dimension == CsvDimension::time) unit = told;
+    if (const auto stated = unit_of(header_.units[second]); stated && stated->dimension == CsvDimension::time) unit = stated;
   if (!unit) {
     plan_.clock = second;
     return;
@@ -298,7 +298,7 @@ void NamedPlanner::plan_euler(const CsvQuantities& q, CsvChannel& channel) {
     return mistake(Errc::invalid_argument, "R-CSV-10", q.euler[0],
                    "Give --euler-order ZYX (about turned axes) or xyz (about fixed ones), in the order of turning.");
   std::array<std::string, 3> columns = q.euler;
-  if (order[0] != order[2]) {  // each axis once: names may tell
+  if (order[0] != order[2]) {  // each axis once: names may show the order
     std::array<char, 3> axes{};
     for (std::size_t i = 0; i < 3; ++i)
       if (const auto found = find(columns[i]); found.size() == 1) axes[i] = axis_in_name(plan_.names[found[0]]);
@@ -314,9 +314,9 @@ void NamedPlanner::plan_euler(const CsvQuantities& q, CsvChannel& channel) {
     channel.euler_axes[to] = static_cast<std::uint8_t>(order[i] - 'x');
     if (columns[i] == kZeroColumn && find(columns[i]).empty()) continue;  // that angle is 0
     const std::size_t found = column(columns[i]);
-    const bool is_told = !mapping_.angle_unit.empty() || unit_in_name(plan_.names[found], CsvDimension::angle).unit ||
+    const bool is_stated = !mapping_.angle_unit.empty() || unit_in_name(plan_.names[found], CsvDimension::angle).unit ||
                          (!header_.units.empty() && unit_of(header_.units[found]));
-    if (!is_told)
+    if (!is_stated)
       mistake(Errc::invalid_argument, "R-CSV-10", columns[i], "Say whether the angles are degrees: --angle-unit deg or rad.");
     channel.rotation[to] = {found, scale_of(found, CsvDimension::angle)};
   }

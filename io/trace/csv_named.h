@@ -45,10 +45,10 @@ struct CsvNamedPlan {
   std::optional<std::size_t> time, segment, object;
   std::optional<std::size_t> clock;     ///< the time of day of `time`, which is a date
   std::optional<std::size_t> fraction;  ///< is added to `time`
-  bool fraction_is_guess = false;       ///< its name alone tells so
+  bool fraction_is_guess = false;       ///< its name alone says so
   std::int64_t fraction_unit = 1;
   std::int64_t time_unit = 1'000'000'000;  ///< [ns]
-  bool time_is_told = false;               ///< by option or name
+  bool time_is_stated = false;             ///< by option or name
   bool time_is_clock = false;              ///< kClockUnit
   std::vector<bool> used;                  ///< per column
   ReadNotes notes;

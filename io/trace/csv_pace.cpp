@@ -200,11 +200,11 @@ CsvResult<void> PaceFinder::ask(double exact, double median) const {
   const std::string rate = std::to_string(std::max(1u, round_rate(exact, 5e-4)));
   const std::string counts =
       median == std::round(median) ? "; --time-unit tick and --tick-rate HZ if they count ticks or frames" : "";
-  if (exact < kLowestRate && !plan_.time_is_told)
+  if (exact < kLowestRate && !plan_.time_is_stated)
     return refuse(Errc::invalid, "R-CSV-11", apart,
                   "Say --time-unit ms (us, ns) if the times are no seconds, --time-unit s or --tick-rate " + rate +
                       " if they are" + counts + ".");
-  if (exact > kHighestRate && !plan_.time_is_told)
+  if (exact > kHighestRate && !plan_.time_is_stated)
     return refuse(
         Errc::invalid, "R-CSV-11", apart,
         "Say --time-unit day (min, h) if the times are no seconds, --time-unit s or --tick-rate " + rate + " if they are.");

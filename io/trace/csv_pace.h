@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// When the rows of a table were: the rate that its first rows tell, and times of rows that come in groups. Internal to the library.
+/// When the rows of a table were: the rate of its first rows, and times of rows that come in groups. Internal to the library.
 ///
 /// A clock that is coarser than the samples, or a driver that hands over many at once, gives several rows one time, or nearly. The rows of
 /// such groups are spread evenly: they are samples, and only their times were lost. Copies of a row are none, and short pauses between
@@ -23,7 +23,7 @@ struct CsvPace {
   double lead = 0;           ///< [ns] of the first row's even time before its own one, below 0: behind it
 };
 
-/// Of the first rows, in order.   out  what was decided is told in the plan's notes
+/// Of the first rows, in order.   out  what was decided is reported in the plan's notes
 /// err  invalid_argument R-CSV-7; invalid R-CSV-5, R-CSV-11
 CsvResult<CsvPace> find_pace(std::span<const CsvRow> rows, const CsvMapping& mapping, CsvNamedPlan& plan);
 

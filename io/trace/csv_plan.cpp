@@ -119,11 +119,11 @@ bool Planner::bind_sense(const std::string& path, const std::array<CsvColumn<Use
   return true;
 }
 
-/// One force at least, with all of its columns. The server's stands for what was felt where nobody told that.
+/// One force at least, with all of its columns. The server's stands for the rendered one where that is not known.
 void Planner::plan_forces(const std::string& path) {
-  const bool has_server = has_any(path, kServerForceColumns), has_felt = !has_server || has_any(path, kForceColumns);
-  plan_.info.users.back().forces = !has_server ? KnownForces::felt : has_felt ? KnownForces::both : KnownForces::server;
-  bind_user(all_columns(path, has_felt ? kForceColumns : kServerForceColumns), kForceColumns);
+  const bool has_server = has_any(path, kServerForceColumns), has_rendered = !has_server || has_any(path, kForceColumns);
+  plan_.info.users.back().forces = !has_server ? KnownForces::rendered : has_rendered ? KnownForces::both : KnownForces::server;
+  bind_user(all_columns(path, has_rendered ? kForceColumns : kServerForceColumns), kForceColumns);
   if (has_server) bind_user(all_columns(path, kServerForceColumns), kServerForceColumns);
 }
 

@@ -86,7 +86,7 @@ template <class Visit>
 void for_each_column(const TraceUser& user, Visit visit) {
   std::ranges::for_each(kDeviceColumns, visit);
   if (user.forces != KnownForces::server) std::ranges::for_each(kForceColumns, visit);
-  if (user.forces != KnownForces::felt) std::ranges::for_each(kServerForceColumns, visit);
+  if (user.forces != KnownForces::rendered) std::ranges::for_each(kServerForceColumns, visit);
   std::ranges::for_each(kTouchColumns, visit);
   if (user.senses.orientation) std::ranges::for_each(kOrientationColumns, visit);
   if (user.senses.velocity) std::ranges::for_each(kDeviceVelocityColumns, visit);

@@ -2,7 +2,7 @@
 /// Rows of a table as text (RFC 4180 quoting, but no line breaks inside quotes), plain or zstd, in any encoding that text.h knows, in
 /// bounded memory.
 ///
-/// Commas, semicolons, tabs or blanks separate the fields; the first values tell (or a line sep=;). Where it is no comma, numbers may have
+/// Commas, semicolons, tabs or blanks separate the fields; the first values show which (or a line sep=;). Where it is no comma, numbers may have
 /// a decimal comma, where it is one, numbers in quotes. A separator at the end of a row is no field. Lines that begin with #, % or // are
 /// comments. What stands ahead of the values: csv_header.h.
 #pragma once

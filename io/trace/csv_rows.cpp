@@ -172,9 +172,9 @@ void CsvRows::turn_axes(RigidSample& sample, bool is_object) const {
   sample.angular_velocity = mirror_ * turned(sample.angular_velocity);
 }
 
-/// By the first time of the table, where nobody told.
+/// By the first time of the table, where it is not stated.
 void CsvRows::settle_unit(const std::string& field) {
-  if (plan_.time_is_told) return;
+  if (plan_.time_is_stated) return;
   const auto unit = unit_of_epoch(field);
   if (!unit) return;
   plan_.time_unit = *unit;  // a guess: an implausible rate is asked about
@@ -220,7 +220,7 @@ std::optional<std::int64_t> clock_of(std::int64_t time) noexcept {
 bool CsvRows::looks_like_clock(std::int64_t time) {
   constexpr std::int64_t kMost = 5'000'000'000;  // [ns] from row to row
   const auto clock = clock_of(time);
-  may_be_clock_ = may_be_clock_ && clock.has_value() && !plan_.time_is_told && plan_.time_unit == 1'000'000'000;
+  may_be_clock_ = may_be_clock_ && clock.has_value() && !plan_.time_is_stated && plan_.time_unit == 1'000'000'000;
   if (!may_be_clock_) return false;
   const std::int64_t since = *clock - std::exchange(last_clock_, *clock);
   return has_time_ && since > 0 && since < kMost && time - last_time_ > since;
@@ -257,7 +257,7 @@ bool CsvRows::read_time(const std::vector<std::string>& fields, CsvRow& row) {
     if (has_time_ && row.time + wrapped_ < last_time_ - turn / 2) wrapped_ += turn;
     row.time += wrapped_;
   }
-  if (time->kind != CsvTimeKind::number) plan_.time_is_told = true;
+  if (time->kind != CsvTimeKind::number) plan_.time_is_stated = true;
   if (!has_time_) {
     if (time->kind == CsvTimeKind::date || unit_of_epoch(fields[*plan_.time]) == plan_.time_unit) first_date_ = row.time;
     has_time_ = true;

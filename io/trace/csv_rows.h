@@ -32,7 +32,7 @@ struct CsvRow {
 class CsvRows {
  public:
   CsvRows(const CsvMapping& mapping, CsvNamedPlan& plan);
-  /// The row that the reader is at.   out  nothing: it is left out, which a note tells
+  /// The row that the reader is at.   out  nothing: it is left out, which a note reports
   CsvResult<std::optional<CsvRow>> parse(const CsvReader& reader);
   /// Of a long table: names in the order in which they came.
   const std::vector<std::string>& objects() const noexcept { return objects_; }

@@ -169,7 +169,7 @@ Result<void> Importer::parse_others(const std::vector<std::string>& fields, Row&
   return {};
 }
 
-/// Ticks per second, 0 when nothing tells.
+/// Ticks per second, 0 when nothing states it.
 std::uint32_t Importer::find_rate() const {
   if (mapping_.tick_rate > 0) return mapping_.tick_rate;
   const Row& row = waiting_.back();

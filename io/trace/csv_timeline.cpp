@@ -102,8 +102,8 @@ CsvResult<CsvImport> CsvTimeline::finish() {
   if (done_.ticks.count() == 0)
     return tl::unexpected(
         mistake(Errc::malformed, "R-CSV-4", 0, "every sample is missing", "Check that the mapping names the right columns."));
-  const bool is_told = mapping_.tick_rate > 0 || !mapping_.time_unit.empty();
-  if (plan_.time && !is_told && 2 * done_.ticks.left_out() > done_.ticks.length())
+  const bool is_stated = mapping_.tick_rate > 0 || !mapping_.time_unit.empty();
+  if (plan_.time && !is_stated && 2 * done_.ticks.left_out() > done_.ticks.length())
     return tl::unexpected(mistake(
         Errc::invalid, "R-CSV-11", 0,
         std::to_string(done_.ticks.left_out()) + " of " + std::to_string(done_.ticks.length()) + " ticks at " +
@@ -120,7 +120,7 @@ CsvResult<CsvImport> CsvTimeline::finish() {
   return done_;
 }
 
-/// Without a column of time the mapping tells the rate.
+/// Without a column of time the mapping states the rate.
 CsvResult<void> CsvTimeline::find_rate() {
   plan_.info.tick_rate = mapping_.tick_rate;
   if (!plan_.time)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Rows at their times to frames at ticks: order, rate, missing samples and resampling, in bounded memory. Internal to the library.
 ///
-/// Rows wait in a window until they are in order. The first of them tell the rate and whether times lie on its grid. On the grid each row is a
+/// Rows wait in a window until they are in order. The first of them show the rate and whether times lie on its grid. On the grid each row is a
 /// tick; off it, ticks lie between rows. Either way a channel that has no sample at a tick gets one on the line (the arc) between its
 /// neighbours, if they are no farther apart than the gap. A tick of which no channel knows anything is left out.
 #pragma once

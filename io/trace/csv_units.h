@@ -30,7 +30,7 @@ UnitInName unit_in_name(std::string_view name, CsvDimension dimension) noexcept;
 /// "p_x" for "p_x [m]": without what stands in brackets at its end.
 std::string_view without_brackets(std::string_view name) noexcept;
 
-/// 'w', 'x', 'y' or 'z' where the name ends with it: "qw", "q_x []", "Rotation Y", "orientation.z"; 0: it does not tell. roll, pitch and yaw are x, y and z.
+/// 'w', 'x', 'y' or 'z' where the name ends with it: "qw", "q_x []", "Rotation Y", "orientation.z"; 0: it does not say. roll, pitch and yaw are x, y and z.
 char axis_in_name(std::string_view name) noexcept;
 
 }  // namespace tactus

@@ -12,7 +12,7 @@
 
 namespace tactus {
 
-inline constexpr std::size_t kKindBytes = 512;  ///< so many tell what a file is
+inline constexpr std::size_t kKindBytes = 512;  ///< so many show what a file is
 
 // Remedies: what makes MCAP of other bags. FILE stands for the name, NEW for the folder that comes out.
 inline constexpr const char* kConvertBag =

@@ -185,7 +185,7 @@ constexpr std::size_t kChunkBytes = 1u << 20;
 constexpr std::uint64_t kChunkTime = 1'000'000'000;  // [ns]
 
 // Okabe and Ito, as in the figures.
-constexpr Colour kObject{0.60, 0.66, 0.72, 1}, kFelt{0.835, 0.369, 0, 1}, kServer{0, 0.447, 0.698, 1},
+constexpr Colour kObject{0.60, 0.66, 0.72, 1}, kRendered{0.835, 0.369, 0, 1}, kServer{0, 0.447, 0.698, 1},
     kTouched{0, 0.62, 0.451, 1}, kDevice{0.15, 0.15, 0.15, 1}, kRest{0.80, 0.84, 0.88, 1};
 constexpr std::array<Colour, 3> kAxes{Colour{0.8, 0.2, 0.2, 1}, Colour{0.2, 0.6, 0.2, 1}, Colour{0.2, 0.3, 0.8, 1}};
 constexpr double kAxisLength = 0.03, kDeviceSize = 0.008, kTouchedSize = 0.005, kThickness = 0.002;  // [m]
@@ -312,7 +312,7 @@ Result<void> FoxgloveWriter::Impl::declare() {
     if (user.forces != KnownForces::server) {
       TACTUS_TRY(own.force, add_channel(kVectorSchema, "/users/" + user.name + "/force"));
     }
-    if (user.forces != KnownForces::felt) {
+    if (user.forces != KnownForces::rendered) {
       TACTUS_TRY(own.server_force, add_channel(kVectorSchema, "/users/" + user.name + "/server_force"));
     }
   }
@@ -363,7 +363,7 @@ void FoxgloveWriter::Impl::write_mesh(std::size_t i, const TraceFrame& frame) {
   std::vector<Vec3> points(rest.vertices.size());
   std::vector<Colour> colours(points.size());
   std::array<Colour, kSteps + 1> ramp;
-  for (std::size_t k = 0; k < ramp.size(); ++k) ramp[k] = mixed(kRest, kFelt, static_cast<double>(k) / kSteps);
+  for (std::size_t k = 0; k < ramp.size(); ++k) ramp[k] = mixed(kRest, kRendered, static_cast<double>(k) / kSteps);
   for (std::size_t v = 0; v < points.size(); ++v) {
     const Vec3 moved{u[3 * v], u[3 * v + 1], u[3 * v + 2]};
     points[v] = in_single_precision(rest.vertices[v] + moved);
@@ -385,7 +385,7 @@ void FoxgloveWriter::Impl::write_user(std::size_t i, const TraceFrame& frame) {
     const Vec3 along = options.metres_per_newton * force;
     if (norm(along) > kLeastArrow) entity.arrows.push_back({hand, along, thickness, colour});
   };
-  if (users[i].force > 0) add_arrow(user.force, kThickness, kFelt);
+  if (users[i].force > 0) add_arrow(user.force, kThickness, kRendered);
   if (users[i].server_force > 0) add_arrow(user.server_force, kThickness / 2, kServer);
   foxglove::encode_scene_update(message, time, {&entity, 1});
   send(users[i].scene);

@@ -31,10 +31,10 @@ struct TraceDeformable {
   double period = 1;                   ///< nominal frame period [ticks], > 0
 };
 
-/// Which of a user's forces a trace knows. Its servers are not told what a hand felt, nor its clients what the server rendered.
+/// Which of a user's forces a trace knows. Servers do not receive what was rendered to a hand, nor clients what the server rendered.
 enum class KnownForces : std::uint8_t {
   both,
-  felt,    ///< UserSample::server_force is 0
+  rendered,  ///< UserSample::server_force is 0
   server,  ///< UserSample::force is the server's
 };
 
@@ -48,7 +48,7 @@ struct TraceUser {
   friend bool operator==(const TraceUser&, const TraceUser&) = default;
 };
 
-/// Error bounds of the stream that a replica was decoded from, and the data that tell where they hold.
+/// Error bounds of the stream that a replica was decoded from, and the data that show where they hold.
 struct TraceBounds {
   StreamBounds stream;
   std::uint8_t position_exp = GridExponents{}.position;  ///< grid of positions: 2^-position_exp m
@@ -71,7 +71,7 @@ struct TraceInfo {
   std::string source;            ///< "sim push-1dof seed 1", "import cube-tosses.csv"
   std::string scene;             ///< scene file (TOML) attached to the trace; may be empty
   std::vector<TraceDeformable> meshes{};
-  std::optional<TraceBounds> bounds{};    ///< of a replica whose stream tells them
+  std::optional<TraceBounds> bounds{};    ///< of a replica whose stream declares them
   bool shows_past = false;                ///< a client behind a network: what it shows at a tick is of an earlier one
   std::optional<TraceCapture> capture{};  ///< a device was captured: ticks may have markers
 };
@@ -99,7 +99,7 @@ struct ServoSample {
 struct UserSample {
   DeviceSample device;
   Contact contact;    ///< contact.device is device.position
-  Vec3 force;         ///< [N] rendered at the client, what the hand felt (KnownForces)
+  Vec3 force;         ///< [N] rendered at the client, to the hand (KnownForces)
   Vec3 server_force;  ///< [N] rendered at the server from the true state, same device sample
   std::optional<SurfaceContact> surface_contact{};
   ServoSample servo{};      ///< only with TraceUser::has_servo

@@ -24,11 +24,11 @@ class FrameAssembler {
   virtual std::optional<std::uint16_t> frame_channel() const noexcept = 0;
   /// What was decided so far; none: nothing ever is.
   virtual const ReadNotes* notes() const noexcept { return nullptr; }
-  /// Words of the last error; null: its place in the file tells all.
+  /// Words of the last error; null: its place in the file says all.
   virtual const Diagnostic* refused() const noexcept { return nullptr; }
 };
 
-/// What a file tells ahead of its first message.
+/// What a file holds ahead of its first message.
 struct Preamble {
   mcap::Item item = mcap::Item::end;     ///< current item of the reader: a message, or the end
   std::optional<mcap::TextMap> tactus;   ///< our metadata record

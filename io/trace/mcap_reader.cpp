@@ -320,7 +320,7 @@ Result<std::optional<Item>> Reader::take_record(Opcode opcode, ByteReader conten
 
 Result<void> Reader::open_chunk(ByteReader content) {
   ++chunk_number_;
-  chunk_from_ = content.u64();  // of its messages, which have their own: told when the chunk is damaged
+  chunk_from_ = content.u64();  // of its messages, which have their own: reported when the chunk is damaged
   chunk_until_ = content.u64();
   const std::uint64_t size = content.u64();
   const std::uint32_t crc = content.u32();

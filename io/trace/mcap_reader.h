@@ -39,7 +39,7 @@ class Reader {
   static tl::expected<Reader, Diagnostic> open(ByteSource source, const ReadLimits& limits = {});
   static tl::expected<Reader, Diagnostic> open(RecordingFiles files, OnDamage on_damage = OnDamage::refuse,
                                                const ReadLimits& limits = {});
-  /// Told at each record at top level how far the reading has come.   pre  all bytes are known; `watcher` outlives the reading
+  /// Called at each record at top level with how far the reading has come.   pre  all bytes are known; `watcher` outlives the reading
   void watch(ReadWatcher* watcher, std::uint64_t all) noexcept { watcher_ = watcher, watched_bytes_ = all; }
 
   /// Move on to the next message, attachment or metadata record; schemas and channels are noted on the way. After an error the

@@ -172,9 +172,9 @@ void Reader::declare_from_summary() {
 }
 
 Diagnostic Reader::explain(const Error& error) const {
-  Diagnostic told{.error = error};
+  Diagnostic out{.error = error};
   const auto append = [&](const std::string& part) {
-    if (!part.empty()) told.detail += (told.detail.empty() ? "" : ", ") + part;
+    if (!part.empty()) out.detail += (out.detail.empty() ? "" : ", ") + part;
   };
   if (const std::string name = files_.name(file_); !name.empty()) append(shown(name));
   if (is_unpacked_) append("of the unpacked file");
@@ -192,7 +192,7 @@ Diagnostic Reader::explain(const Error& error) const {
                   1e-9 * static_cast<double>(chunk_until_));
     append("chunk " + std::to_string(chunk_number_) + span.data());
   }
-  return told;
+  return out;
 }
 
 }  // namespace tactus::mcap

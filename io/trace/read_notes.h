@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What a reader of foreign files decided, because the file leaves it open or says it badly: which clock it took, what it interpolated, which
-/// samples are missing, what it left out, what it lost to damage. Every decision that changes a number is told; nothing is decided in
+/// samples are missing, what it left out, what it lost to damage. Every decision that changes a number is reported; nothing is decided in
 /// silence.
 #pragma once
 
@@ -33,7 +33,7 @@ struct ReadLoss {
   std::string file{};                            ///< of a recording of several files
   Error cause{};                                 ///< its offset is that of the record
   std::uint64_t bytes = 0;                       ///< of the file; 0: not known
-  std::optional<std::uint64_t> from{}, until{};  ///< [ns] log times of what was lost, if something tells them
+  std::optional<std::uint64_t> from{}, until{};  ///< [ns] log times of what was lost, if something states them
 };
 
 /// Sees how far a long look at a recording has come.

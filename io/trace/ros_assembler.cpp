@@ -83,12 +83,12 @@ class RosAssembler final : public FrameAssembler {
   };
   struct User {
     std::uint32_t source = 0;
-    std::optional<std::size_t> beside{};  // object where the force acts, if its frame does not tell
+    std::optional<std::size_t> beside{};  // object where the force acts, if its frame does not show it
   };
   Result<void> look(mcap::Reader& mcap, std::size_t most, bool keeps);
   std::vector<std::string> find_objects();
   void take_twist(Object& object, std::uint32_t twist);
-  void tell_unknown(const mcap::Reader& mcap, const std::vector<std::string>& left_out);
+  void note_unknown(const mcap::Reader& mcap, const std::vector<std::string>& left_out);
   void find_users();
   std::string free_name(std::string name, const std::string& of, std::set<std::string>& names);
   Result<std::optional<RosSample>> read(mcap::Reader& mcap);
@@ -144,7 +144,7 @@ tl::expected<void, Diagnostic> RosAssembler::start(mcap::Reader& mcap, mcap::Ite
   if (!decided) return decided;
   is_whole_ = is_whole_ || kept_.size() < kLookAhead;
   samples_.close();
-  survey_.tell(looked, is_whole_, notes_);
+  survey_.add_notes(looked, is_whole_, notes_);
   if (ahead) samples_.restart(first);
   window_ = is_whole_ ? survey_.disorder() : 2 * survey_.disorder() + kPipeSlack;
   const auto& sources = samples_.sources();
@@ -156,11 +156,11 @@ tl::expected<void, Diagnostic> RosAssembler::start(mcap::Reader& mcap, mcap::Ite
   frames_.emplace(samples_, tracks_, notes_);
   std::vector<std::string> left_out = find_objects();
   find_users();
-  tell_unknown(looked, left_out);
+  note_unknown(looked, left_out);
   return {};
 }
 
-/// Names of topics and frames are made fit for a trace; where two are alike, a number tells them apart.
+/// Names of topics and frames are made fit for a trace; where two are alike, a number distinguishes them.
 std::string RosAssembler::free_name(std::string name, const std::string& of, std::set<std::string>& names) {
   for (char& c : name)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
@@ -221,14 +221,14 @@ void RosAssembler::take_twist(Object& object, std::uint32_t twist) {
 }
 
 /// A name that was typed wrong takes or leaves out nothing.
-void RosAssembler::tell_unknown(const mcap::Reader& mcap, const std::vector<std::string>& left_out) {
-  const auto tell = [&](const std::string& name, const char* what) {
+void RosAssembler::note_unknown(const mcap::Reader& mcap, const std::vector<std::string>& left_out) {
+  const auto note = [&](const std::string& name, const char* what) {
     const auto is_it = [&](const auto& channel) { return RosSelection{{name}, {}}.has(channel.second.topic); };
     if (std::ranges::none_of(mcap.channels(), is_it)) notes_.add(name, what);
   };
-  for (const std::string& topic : options_.topics) tell(topic, "is to be read, but no topic is called so");
+  for (const std::string& topic : options_.topics) note(topic, "is to be read, but no topic is called so");
   for (const std::string& name : options_.skip)
-    if (std::ranges::find(left_out, name) == left_out.end()) tell(name, "is to be left out, but no topic or object is called so");
+    if (std::ranges::find(left_out, name) == left_out.end()) note(name, "is to be left out, but no topic or object is called so");
 }
 
 /// Users are the topics with forces. They are where the frame of the force is, or the object of a topic beside, if there is one alone.
@@ -369,12 +369,12 @@ RigidSample RosAssembler::place(const Object& object) {
   RosTrack& track = tracks_[object.source];
   RigidSample placed = hung(frames_->at(source.space, track.frame()), track.state());
   if (!object.twist) return placed;
-  const RosTrack& told = tracks_[*object.twist];
-  const auto twist = told.twist(500'000'000 / info_.tick_rate);
+  const RosTrack& twist_track = tracks_[*object.twist];
+  const auto twist = twist_track.twist(500'000'000 / info_.tick_rate);
   if (!twist) return placed;
   const std::uint32_t space = samples_.sources()[*object.twist].space;
-  Quat turn = frames_->at(space, told.frame()).pose.rotation;
-  const bool is_of_body = source.is_odometry && told.frame() != track.frame() && !samples_.link_of(space, told.frame());
+  Quat turn = frames_->at(space, twist_track.frame()).pose.rotation;
+  const bool is_of_body = source.is_odometry && twist_track.frame() != track.frame() && !samples_.link_of(space, twist_track.frame());
   if (is_of_body) turn = placed.pose.rotation;
   placed.velocity = rotate(turn, twist->linear);
   placed.angular_velocity = rotate(turn, twist->angular);

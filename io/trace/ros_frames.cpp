@@ -27,10 +27,10 @@ std::optional<std::uint64_t> RosTrack::next_time() const noexcept {
 RigidSample RosTrack::state() noexcept { return has_samples() ? track_.moving(kNanosecond) : first_->value; }
 
 std::optional<Twist> RosTrack::twist(std::uint64_t near) const noexcept {
-  const bool is_told = track_.is_known() || (track_.place() == Track::Place::after && covers(near));
-  if (!is_told) return std::nullopt;
-  const RigidSample told = track_.is_known() ? track_.value() : track_.last();
-  return Twist{told.velocity, told.angular_velocity};
+  const bool has_twist = track_.is_known() || (track_.place() == Track::Place::after && covers(near));
+  if (!has_twist) return std::nullopt;
+  const RigidSample sample = track_.is_known() ? track_.value() : track_.last();
+  return Twist{sample.velocity, sample.angular_velocity};
 }
 
 // ==== frames ====

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a recording tells at one tick: every source between its samples, and coordinate frames that hang on each other. Internal to the
+/// What a recording holds at one tick: every source between its samples, and coordinate frames that hang on each other. Internal to the
 /// library.
 #pragma once
 
@@ -30,12 +30,12 @@ class RosTrack {
   /// Something is recorded here: between two samples, or so near to one.
   bool covers(std::uint64_t near) const noexcept { return track_.is_near(static_cast<double>(near)); }
   std::optional<std::uint64_t> next_time() const noexcept;
-  /// Name of the frame in which the values are told.
+  /// Name of the frame in which the values are expressed.
   std::uint32_t frame() const noexcept { return has_samples() ? track_.frame() : first_->frame; }
-  /// Of a pose or link, as it moves; of a twist, as it was told.
+  /// Of a pose or link, as it moves; of a twist, as it was published.
   RigidSample state() noexcept;
   Vec3 force() const noexcept { return has_samples() ? track_.vector() : Vec3{}; }
-  /// None where nothing is told.
+  /// None where nothing is known.
   std::optional<Twist> twist(std::uint64_t near) const noexcept;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// ROS 2 messages with motion or forces, as recordings of other programs hold them. All of a message is parsed; what is not used is told.
+/// ROS 2 messages with motion or forces, as recordings of other programs hold them. All of a message is parsed; what is not used is reported.
 /// Internal to the library.
 #pragma once
 
@@ -38,14 +38,14 @@ enum class RosType : std::uint8_t { none, pose, twist, odometry, wrench, transfo
 /// The type of a schema that is read: "geometry_msgs/msg/PoseStamped", or as older writers spell it, without "/msg".
 RosType ros_type(std::string_view schema) noexcept;
 
-/// One thing that a message tells. Names last as long as the message.
+/// One thing that a message holds. Names last as long as the message.
 struct RosItem {
   RosFault fault = RosFault::none;
   bool has_stamp = false;         ///< it is neither zero nor impossible
   std::uint64_t stamp = 0;        ///< [ns]
   std::string_view frame, child;  ///< header.frame_id and child_frame_id, without leading slashes
   Pose pose{};                    ///< of a pose, an odometry and a transform: of unit length
-  Twist twist{};                  ///< as told: of an odometry, in `child`
+  Twist twist{};                  ///< as published: of an odometry, in `child`
   RosFault twist_fault = RosFault::none;
   Vec3 force{};          ///< [N]
   bool ignored = false;  ///< a torque or a covariance is not zero

@@ -64,7 +64,7 @@ const RosSamples::ChannelUse& RosSamples::use_of(const mcap::Reader& mcap, std::
   const auto schema = mcap.schemas().find(channel.schema_id);
   if (channel.message_encoding == "cdr" && schema != mcap.schemas().end()) use.type = ros_type(schema->second.name);
   const bool is_tree = use.type == RosType::transform || use.type == RosType::transforms;
-  // a tree places what other topics tell, whether or not its frames are wanted as objects
+  // a tree places what other topics hold, whether or not its frames are wanted as objects
   if (is_tree ? holds(selection_.skip, channel.topic) : !selection_.has(channel.topic)) use.type = RosType::none;
   if (use.type != RosType::none) {
     ++channels_of_topic_[channel.topic];
@@ -149,7 +149,7 @@ void RosSamples::take_odometry(const ChannelUse& use, const std::string& topic, 
   push(sample);
 }
 
-/// A copy of a sample tells nothing new, and makes what moves look as if it rested. Where stamps stand still there are no copies.
+/// A copy of a sample holds nothing new, and makes what moves look as if it rested. Where stamps stand still there are no copies.
 void RosSamples::push(const RosSample& sample) {
   constexpr std::int64_t kLongestRun = 1'000'000'000;  // [ns]
   if (sample.fault == RosFault::none && sample.stamp != 0 && !sources_[sample.source].is_static) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the messages of a recording tell, one source at a time: a source is a topic of poses, twists or forces, or a frame that hangs on
+/// What the messages of a recording hold, one source at a time: a source is a topic of poses, twists or forces, or a frame that hangs on
 /// another one. Internal to the library.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace tactus {
 
 struct RosSample {
   std::uint32_t source = 0;
-  std::uint32_t frame = 0;           ///< name in which it is told; of a link: the parent
+  std::uint32_t frame = 0;           ///< name in which it is expressed; of a link: the parent
   std::uint64_t ordinal = 0;         ///< of its message in the file
   std::uint64_t log = 0, stamp = 0;  ///< [ns] stamp 0: none
   std::uint64_t time = 0;            ///< [ns] by the clock that was chosen (RosClock)
@@ -32,9 +32,9 @@ struct RosSample {
 struct RosSource {
   enum class Kind : std::uint8_t { pose, twist, force, link };
   Kind kind{};
-  std::string topic;         ///< on which it was first told
+  std::string topic;         ///< on which it was first published
   std::uint32_t space = 0;   ///< name: where its frames are looked up first; "/r1/tf" gives "r1", of other topics the path
-  std::uint32_t child = 0;   ///< name: of a link, the frame that hangs; of an odometry's twist, the frame it is told in
+  std::uint32_t child = 0;   ///< name: of a link, the frame that hangs; of an odometry's twist, the frame it is expressed in
   bool is_odometry = false;  ///< a pose or twist of one
   bool is_static = false;    ///< a link of /tf_static
 };
@@ -75,7 +75,7 @@ class RosSamples {
   const std::map<std::string, std::uint64_t>& late() const noexcept { return late_; }
   /// By source: samples with stamp and value of the one before, no more than a second after the first such one, which are left out.
   const std::map<std::uint32_t, std::uint64_t>& copies() const noexcept { return copies_; }
-  /// Topics told of by several channels.
+  /// Topics of several channels.
   const std::map<std::string, int>& channels() const noexcept { return channels_of_topic_; }
   /// Two types on one topic, or the like: topic, then what.
 

@@ -216,19 +216,19 @@ void RosSurvey::find_start() {
 
 // ==== notes ====
 
-void RosSurvey::tell(const mcap::Reader& mcap, bool whole, ReadNotes& notes) {
+void RosSurvey::add_notes(const mcap::Reader& mcap, bool whole, ReadNotes& notes) {
   if (!whole)
     notes.add("",
               "read from a pipe: topics, rates, clocks and frames are those of its first samples; give the file itself to have "
               "all of them seen");
-  tell_clock(notes);
-  tell_rate(notes);
-  for (std::uint32_t i = 0; i < facts_.size(); ++i) tell_source(i, notes);
-  tell_frames(notes);
-  tell_topics(mcap, notes);
+  note_clock(notes);
+  note_rate(notes);
+  for (std::uint32_t i = 0; i < facts_.size(); ++i) note_source(i, notes);
+  note_frames(notes);
+  note_topics(mcap, notes);
 }
 
-void RosSurvey::tell_clock(ReadNotes& notes) const {
+void RosSurvey::note_clock(ReadNotes& notes) const {
   if (!strays_.empty())
     notes.add("", "a message with a log time far from those around: taken between them",
               "message " + std::to_string(strays_.begin()->first), strays_.size());
@@ -241,7 +241,7 @@ void RosSurvey::tell_clock(ReadNotes& notes) const {
   }
   if (steps_.disorder() > 0)
     notes.add("", "messages cross in time by up to " + seconds(1e-9 * static_cast<double>(steps_.disorder())) + "; sorted");
-  tell_stamps(notes);
+  note_stamps(notes);
   for (std::uint32_t i = 0; i < facts_.size(); ++i) {
     if (!moving_[i] || facts_[i].samples < 8 || facts_[i].stampless > 0) continue;
     const double log = facts_[i].log.length(), stamps = facts_[i].stamps.length();
@@ -252,7 +252,7 @@ void RosSurvey::tell_clock(ReadNotes& notes) const {
   }
 }
 
-void RosSurvey::tell_stamps(ReadNotes& notes) const {
+void RosSurvey::note_stamps(ReadNotes& notes) const {
   double least = 0, most = 0;
   bool any = false;
   for (std::uint32_t i = 0; i < facts_.size(); ++i) {
@@ -283,7 +283,7 @@ void RosSurvey::tell_stamps(ReadNotes& notes) const {
                       " s " + (is_ahead ? "after" : "before") + " them, are ignored");
 }
 
-void RosSurvey::tell_rate(ReadNotes& notes) const {
+void RosSurvey::note_rate(ReadNotes& notes) const {
   const auto pace = clock_.pace(densest_, facts_);
   if (!moving_[densest_] || !(pace.period > 0)) return;
   const double rate = 1 / pace.period;
@@ -304,7 +304,7 @@ void RosSurvey::tell_rate(ReadNotes& notes) const {
   }
 }
 
-void RosSurvey::tell_source(std::uint32_t source, ReadNotes& notes) const {
+void RosSurvey::note_source(std::uint32_t source, ReadNotes& notes) const {
   const SourceFacts& facts = facts_[source];
   const Kind kind = samples_.sources()[source].kind;
   for (const auto& [key, seen] : faults_)
@@ -318,7 +318,7 @@ void RosSurvey::tell_source(std::uint32_t source, ReadNotes& notes) const {
     notes.add(place_of(source), "its samples go to and fro between two places, up to " + text(facts.return_distance, "%.3g") +
                                     " m apart, as of two publishers: let each have a topic of its own");
   if (facts.samples == 0) return;
-  if (!moving_[source]) return tell_rest(source, notes);
+  if (!moving_[source]) return note_rest(source, notes);
   const GapStatistics& times = clock_.takes_stamp(source) ? facts.stamps : facts.log;
   if (times.equal() > 0 && !clock_.spreads(source))
     notes.add(place_of(source), "a sample at the time of the one before: of equal times the last counts", {}, times.equal());
@@ -327,18 +327,18 @@ void RosSurvey::tell_source(std::uint32_t source, ReadNotes& notes) const {
               "a time before the one that stands before, by up to " +
                   seconds(1e-9 * static_cast<double>(facts.log.farthest_back())) + "; sorted",
               {}, facts.log.backward());
-  tell_gaps(source, notes);
+  note_gaps(source, notes);
 }
 
-/// Of what is told once, or by a static transform.
-void RosSurvey::tell_rest(std::uint32_t source, ReadNotes& notes) const {
+/// Of what is published once, or by a static transform.
+void RosSurvey::note_rest(std::uint32_t source, ReadNotes& notes) const {
   const SourceFacts& facts = facts_[source];
   if (facts.log.first() > log_start_ + gaps_[source])
-    notes.add(place_of(source), std::string("is told ") + text_of_time(facts.log.first()) + "; it holds from the beginning");
-  if (facts.moved > 0 || facts.turned > 0) notes.add(place_of(source), "is told to have changed; it jumps then");
+    notes.add(place_of(source), std::string("is published ") + text_of_time(facts.log.first()) + "; it holds from the beginning");
+  if (facts.moved > 0 || facts.turned > 0) notes.add(place_of(source), "is published with another value; it jumps then");
 }
 
-void RosSurvey::tell_gaps(std::uint32_t source, ReadNotes& notes) const {
+void RosSurvey::note_gaps(std::uint32_t source, ReadNotes& notes) const {
   const SourceFacts& facts = facts_[source];
   const Kind kind = samples_.sources()[source].kind;
   const GapStatistics& times = clock_.takes_stamp(source) ? facts.stamps : facts.log;
@@ -359,12 +359,12 @@ void RosSurvey::tell_gaps(std::uint32_t source, ReadNotes& notes) const {
               {}, times.longer_than(gap));
 }
 
-void RosSurvey::tell_frames(ReadNotes& notes) {
+void RosSurvey::note_frames(ReadNotes& notes) {
   const auto& sources = samples_.sources();
   for (const auto& [source, change] : changes_) {
     const bool is_link = sources[source].kind == Kind::link;
     notes.add(place_of(source),
-              std::string(is_link ? "hangs on another frame: " : "is told in another frame: ") + samples_.name(change.to) +
+              std::string(is_link ? "hangs on another frame: " : "is expressed in another frame: ") + samples_.name(change.to) +
                   ", before on " + samples_.name(change.from) + "; followed",
               text_of_time(change.log), change.count);
   }
@@ -399,14 +399,14 @@ void RosSurvey::tell_frames(ReadNotes& notes) {
       notes.add("", "frame '" + name + "' is the world");
       continue;
     }
-    std::set<std::string> told;
+    std::set<std::string> noted;
     for (const std::uint32_t i : which)
-      if (told.insert(place_of(i)).second)
-        notes.add(place_of(i), "hangs on frame '" + name + "', of which nothing is told: taken for the world, like others");
+      if (noted.insert(place_of(i)).second)
+        notes.add(place_of(i), "hangs on frame '" + name + "', of which nothing is known: taken for the world, like others");
   }
 }
 
-void RosSurvey::tell_topics(const mcap::Reader& mcap, ReadNotes& notes) const {
+void RosSurvey::note_topics(const mcap::Reader& mcap, ReadNotes& notes) const {
   for (const auto& [topic, channels] : samples_.channels())
     if (channels > 1) notes.add(topic, "comes on " + counted(static_cast<std::uint64_t>(channels), "channel") + "; taken as one");
   std::string text;

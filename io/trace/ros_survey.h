@@ -25,7 +25,7 @@ class RosSurvey {
   /// All samples were added: decide. A rate, a clock, a beginning and the gap of each source follow.
   tl::expected<void, Diagnostic> end(const mcap::Reader& mcap);
   /// Say what was decided. in  whole  all of the recording was looked at
-  void tell(const mcap::Reader& mcap, bool whole, ReadNotes& notes);
+  void add_notes(const mcap::Reader& mcap, bool whole, ReadNotes& notes);
 
   std::uint32_t tick_rate() const noexcept { return tick_rate_; }
   std::uint64_t start() const noexcept { return start_; }
@@ -55,14 +55,14 @@ class RosSurvey {
   void add_motion(SourceFacts& facts, const RosSample& sample) const;
   tl::expected<void, Diagnostic> check() const;
   void find_start();
-  void tell_clock(ReadNotes& notes) const;
-  void tell_stamps(ReadNotes& notes) const;
-  void tell_rate(ReadNotes& notes) const;
-  void tell_source(std::uint32_t source, ReadNotes& notes) const;
-  void tell_rest(std::uint32_t source, ReadNotes& notes) const;
-  void tell_gaps(std::uint32_t source, ReadNotes& notes) const;
-  void tell_frames(ReadNotes& notes);
-  void tell_topics(const mcap::Reader& mcap, ReadNotes& notes) const;
+  void note_clock(ReadNotes& notes) const;
+  void note_stamps(ReadNotes& notes) const;
+  void note_rate(ReadNotes& notes) const;
+  void note_source(std::uint32_t source, ReadNotes& notes) const;
+  void note_rest(std::uint32_t source, ReadNotes& notes) const;
+  void note_gaps(std::uint32_t source, ReadNotes& notes) const;
+  void note_frames(ReadNotes& notes);
+  void note_topics(const mcap::Reader& mcap, ReadNotes& notes) const;
 
   RosSamples& samples_;
   const ReadOptions& options_;

@@ -59,7 +59,7 @@ class SampleTrack {
   struct Sample {
     Time at{};
     RigidSample value{};      ///< a vector alone has its place in the position
-    std::uint32_t frame = 0;  ///< in which it is told: samples of different frames have nothing between them
+    std::uint32_t frame = 0;  ///< in which it is expressed: samples of different frames have nothing between them
   };
   struct Limits {
     double gap = 0;   ///< longest distance between two samples that is interpolated over
@@ -102,7 +102,7 @@ class SampleTrack {
   RigidSample value() const noexcept;
   /// On curves.   pre  likewise
   Pose pose() noexcept;
-  /// The sample before, as it was told, or the first.   pre  likewise
+  /// The sample before, as it was published, or the first.   pre  likewise
   const RigidSample& last() const noexcept { return samples_[at_].value; }
   /// Of what is 0 where nothing is known.
   Vec3 vector() const noexcept { return is_known() || is_held() ? value().pose.position : Vec3{}; }

@@ -143,7 +143,7 @@ std::optional<KnownForces> known_forces(const std::map<std::string_view, const m
     return found == by_topic.end() || entry(found->second->metadata, "known") != "no";
   };
   if (is_known("/server_force")) return is_known("/force") ? KnownForces::both : KnownForces::server;
-  return is_known("/force") ? std::optional(KnownForces::felt) : std::nullopt;
+  return is_known("/force") ? std::optional(KnownForces::rendered) : std::nullopt;
 }
 
 /// Channels are found by topic: ids may change when other tools rewrite a file.

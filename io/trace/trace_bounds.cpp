@@ -106,8 +106,8 @@ void pass(Entries& entries, TraceBounds& bounds) {
 mcap::TextMap entries_of(const TraceBounds& bounds) {
   mcap::TextMap out;
   Entries entries(out);
-  TraceBounds told = bounds;
-  pass(entries, told);
+  TraceBounds copy = bounds;
+  pass(entries, copy);
   return out;
 }
 

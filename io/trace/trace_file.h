@@ -28,12 +28,12 @@
 ///   record "tactus_capture" of a capture: who, what and when (trace_capture.h)
 ///   pose channels           dof
 ///   reports channels        report_descriptor (hexadecimal)
-///   force and server_force  known ("no": nobody told it, see KnownForces; left out if known)
+///   force and server_force  known ("no": it is not, see KnownForces; left out if known)
 ///   rest channels           fixed (vertex numbers, ascending, blanks between; left out if none), period (ticks; left out if 1)
 /// The scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or TraceWriterOptions::chunk_time.
 ///
 /// rule      class             broken when
-/// R-TRC-1   io                the operating system refuses to open, read or write the file; errno tells why
+/// R-TRC-1   io                the operating system refuses to open, read or write the file; errno says why
 /// R-TRC-2   malformed         MCAP's magic bytes are not at the front, or not at the very end behind a footer
 ///           unsupported       the file is of another known kind, or a folder holds no bag of MCAP files
 /// R-TRC-3   truncated         the file ends before the header, the channels that its metadata announces, or any pose,
@@ -145,8 +145,8 @@ struct ReadOptions {
 ///   WrenchStamped                  each topic is a user who feels the force, where its frame is, or the one object of a topic beside it
 ///   One topic on several channels is one source. Torques and covariances are ignored; other types are not read.
 /// Frames
-///   What is told in a frame is turned and moved into the world: the frame that hangs on none. Leading slashes of names are dropped. The
-///   frames of a topic /r1/... are looked up in the tree of /r1/tf, then in the common one. An odometry's twist is told in child_frame_id:
+///   What is expressed in a frame is turned and moved into the world: the frame that hangs on none. Leading slashes of names are dropped. The
+///   frames of a topic /r1/... are looked up in the tree of /r1/tf, then in the common one. An odometry's twist is expressed in child_frame_id:
 ///   that frame of the tree, else the frame of the pose. A frame that comes to hang on another one is followed from then on; a transform
 ///   that closes a loop is left out.
 /// Time
@@ -171,7 +171,7 @@ class TraceReader {
   /// in   path  a file, a bag's folder or its metadata.yaml; "-" is standard input. zstd and LZ4 files are unpacked on the way
   /// err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n, R-SRF-n
   static Result<TraceReader> open(const std::string& path);
-  /// The same, where an error says what is wrong, where, and what mends it.
+  /// The same, where an error says what is wrong, where, and what repairs it.
   static tl::expected<TraceReader, Diagnostic> open(const std::string& path, const ReadOptions& options);
   /// The same from memory that outlives the reader.
   static Result<TraceReader> open_memory(std::span<const std::uint8_t> bytes);
@@ -183,7 +183,7 @@ class TraceReader {
   /// The last error of next(), with what is known beyond its rule.
   Diagnostic explain(const Error& error) const;
   const TraceInfo& info() const noexcept;
-  /// Number of frames if the file's summary tells it.
+  /// Number of frames if the file's summary states it.
   std::optional<std::uint64_t> frame_count() const noexcept;
   /// Read the next frame into `frame`; false at the end. Pass the frame of the previous call: its vectors are reused, and a shape
   /// that is not new stays in it. Do not use the reader after an error.

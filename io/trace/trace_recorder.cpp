@@ -74,7 +74,7 @@ struct TraceRecorder::Impl {
   std::vector<TraceFrame> ring;
   std::atomic<std::uint64_t> put{0}, taken{0};  // frames, each written by one thread
   std::vector<bool> missed_shapes;              // of frames that were lost
-  bool only_meshes;                             // they tell the ticks, too
+  bool only_meshes;                             // they have the ticks, too
   std::atomic<std::uint64_t> lost{0}, most_waiting{0};
   std::atomic<std::int64_t> last_written{-1};
   Error error{};

@@ -74,7 +74,7 @@ Result<std::map<std::string, ClusterBasis>> find_clusters(TraceReader& reader, s
 // ==== trace replica ====
 // What a client shows, as a trace: the other way round than trace_scene.h.
 
-/// The objects of a scene, and the bounds that it tells; no users.
+/// The objects of a scene, and the bounds that it declares; no users.
 TraceInfo replica_info(const Scene& scene, std::string source);
 
 /// A frame with room for the objects of a scene; shapes are at rest.

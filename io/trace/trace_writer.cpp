@@ -106,7 +106,7 @@ mcap::TextMap metadata_of(const TraceDeformable& mesh) {
 
 bool is_unknown(const TraceChannel& channel, const TraceInfo& info) {
   if (channel.role == Role::force) return info.users[channel.index].forces == KnownForces::server;
-  return channel.role == Role::server_force && info.users[channel.index].forces == KnownForces::felt;
+  return channel.role == Role::server_force && info.users[channel.index].forces == KnownForces::rendered;
 }
 
 /// How ROS 2 is to offer a channel, as rosbag2 writes it: profile "ros2" wants it of every channel. What is sent once must still reach
@@ -337,7 +337,7 @@ void TraceWriter::Impl::find_changed(const TraceFrame& frame) {
   keep_time();
 }
 
-/// Some channel tells of every tick.
+/// Some channel has every tick.
 void TraceWriter::Impl::keep_time() {
   const bool always = !channels.empty() && channels[0].role == Role::pose && channels[0].occurs == Occurs::every_tick;
   if (always && (changed.empty() || changed[0] != 0)) changed.insert(changed.begin(), 0);

@@ -18,7 +18,7 @@ WHOLE_LINE = argparse.RawDescriptionHelpFormatter
 
 
 class Refusal(Exception):
-    """Why a command fails: what is wrong, and what mends it. `findings`: all of several, each a pair (text, remedy)."""
+    """Why a command fails: what is wrong, and a remedy. `findings`: all of several, each a pair (text, remedy)."""
 
     def __init__(self, text, remedy="", status=FAILED, findings=(), **said):
         super().__init__(text)

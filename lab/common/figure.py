@@ -19,7 +19,7 @@ from .arguments import USAGE, Refusal, how_to_install
 from .table import write_whole
 
 ENDINGS = (".svg", ".png", ".pdf")
-# Told apart by everybody (Okabe and Ito); in grey by dashes and markers.
+# Distinguishable by everybody (Okabe and Ito); in grey by dashes and markers.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (1, 1)))
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
@@ -127,7 +127,7 @@ def drawn(fig, ending):
 
 def compact(svg):
     """An SVG of a third of the size that looks the same: coordinates to 1/100 of a point, from each point to the next; short names, of what is
-    used alone; styles told once; no indentation."""
+    used alone; styles stated once; no indentation."""
     svg = re.sub(r'(?<= d=")[^"]*(?=")', lambda found: compact_path(found[0]), svg)
     svg = re.sub(r'(?<= [xy]=")-?\d+\.\d+(?=")|(?<= [xy][12]=")-?\d+\.\d+(?=")|(?<=translate\()[-\d. ]+(?=\))',
                  lambda found: " ".join(hundredths(round(100 * float(number))) for number in found[0].split()), svg)
@@ -137,8 +137,8 @@ def compact(svg):
     styles = collections.Counter(re.findall(r' style="([^"]*)"', svg))
     classes = {style: f"s{i}" for i, (style, count) in enumerate(styles.items()) if count > 2 and "url(" not in style}
     svg = re.sub(r' style="([^"]*)"', lambda found: f' class="{classes[found[1]]}"' if found[1] in classes else found[0], svg)
-    told = "".join(f".{name}{{{style}}}" for style, name in classes.items())
-    return re.sub(r"\n\s+", "\n", svg.replace("</style>", told + "</style>", 1))
+    rules = "".join(f".{name}{{{style}}}" for style, name in classes.items())
+    return re.sub(r"\n\s+", "\n", svg.replace("</style>", rules + "</style>", 1))
 
 
 def hundredths(number):

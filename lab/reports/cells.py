@@ -161,7 +161,7 @@ def agrees(number, text):
 
 
 def check(tables, name):
-    """out  (rows that agree, rows that are not to be had here, [(line, what is told, value, number or error)])"""
+    """out  (rows that agree, rows that are not to be had here, [(line, what is stated, value, number or error)])"""
     agree, elsewhere, wrong = 0, 0, []
     for line, row in enumerate(tables.rows(name), 2):
         source = row["source"]

@@ -12,8 +12,8 @@ from studies import report
 CASES = [  # clients, objects, moving, and what else
     (1, 10, 10, {}), (64, 10, 10, {}), (1024, 10, 10, {}), (1024, 10, 10, {"loss": 0.1}),
     (64, 1000, 10, {}), (64, 1000, 10, {"loss": 0.1}), (64, 1000, 10, {"participants": True}), (64, 1000, 100, {}),
-    (64, 1000, 0, {}), (16, 10_000, 10, {}), (16, 10_000, 10, {"tells_moved": True}),
-    (4, 100_000, 100, {"tells_moved": True}),
+    (64, 1000, 0, {}), (16, 10_000, 10, {}), (16, 10_000, 10, {"names_moved": True}),
+    (4, 100_000, 100, {"names_moved": True}),
 ]
 SHORT = [(8, 100, 10, {}), (8, 100, 0, {})]
 HEAD = ["clients", "objects", "moving", "loss", "participants", "tells_moved", "live", "instructions_per_tick", "tick_mean_s",
@@ -87,14 +87,14 @@ def csv_row(row):
                row["join_elsewhere_s"]["worst"], memory["both_ends"], memory["server"],
                down["datagrams"], down["bytes"]]
     return [row["clients"], row["objects"], row["moving"], row["loss"], int(row.get("participants", False)),
-            int(row.get("tells_moved", False)), row["live"],
+            int(row.get("names_moved", False)), row["live"],
             "" if row["instructions"] is None else f"{row['instructions']:.0f}", *(f"{value:.6g}" for value in numbers)]
 
 
 def remarks(row):
     said = [f"{100 * row['loss']:.0f} % loss"] if row["loss"] else []
     said += ["participants"] if row.get("participants") else []
-    return ", ".join(said + (["what moved is named"] if row.get("tells_moved") else []))
+    return ", ".join(said + (["what moved is named"] if row.get("names_moved") else []))
 
 
 def cells(row):

@@ -114,7 +114,7 @@ def cells(motion, case):
 
 def remarks(case):
     """What else there is to say of a case."""
-    out = f"; mended {1e3 * case['recovery_s']:.0f} ms after it" if case.get("recovery_s") else ""
+    out = f"; recovered {1e3 * case['recovery_s']:.0f} ms after it" if case.get("recovery_s") else ""
     widened = case["bounds_widened"]
     if widened["for_s"] > 0:
         fraction = 100 * per(widened["for_s"], case["seconds"])
@@ -162,7 +162,7 @@ def markdown(motions, options, drawn):
            "that of "
            "packets that build on the one before over a network that loses nothing. The same rows are in `session.csv`. Of the "
            "hashes of "
-           f"states that the clients told, {wrong} were not those of the server.\n")
+           f"states that the clients reported, {wrong} were not those of the server.\n")
     if drawn:
         out += "\n![fraction of ticks over a bound, over loss](session-loss.svg)\n"
     for motion in motions:

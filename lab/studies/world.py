@@ -18,7 +18,7 @@ NAMES = {"declared": "declared objects"}
 FIGURE = 3  # the row whose seed is drawn: 16 servers
 FACTORS = {"physics": ["physics_us"],
            "sessions": ["session_us", "truth_us", "truth_of_1000_us", "look_us", "tell_us", "packet_us", "packet_of_1000_us"],
-           "declared": ["truth_of_1000_us", "packet_of_1000_us"]}  # objects that are declared and have nothing to tell
+           "declared": ["truth_of_1000_us", "packet_of_1000_us"]}  # objects that are declared and have nothing to send
 QUANTITIES = [  # key, heading, scale, unit in CSV
     ("moving", "move", 1, ""), ("members", "in interest", 1, ""), ("told", "of them move", 1, ""), ("changes_per_s", "lod changes/s", 1, ""),
     ("down", "down [kbit/s]", 1e-3, "_bit_per_s"), ("down_most", "most [kbit/s]", 1e-3, "_bit_per_s"),
@@ -152,7 +152,7 @@ def markdown(rows, options, seconds, costs, has_figure):
             "largest of the seeds. Nothing here ran on a network: users, objects and regions are simulated, costs are those of the second "
             "table. *CPU*: of one server in a tick of 1 ms: mean of all, the fullest at a time, the worst step of 200 ms; *physics* is the "
             "part of the mean that the simulation takes. *Users/s*, *objects/s*: hand-overs across borders. *Ghosts*: moving objects of "
-            "others that servers are told of. *Memory*: of the server with the most users, if it declares all objects.\n\n" +
+            "others that servers know of. *Memory*: of the server with the most users, if it declares all objects.\n\n" +
             report.markdown(columns(), [cells(row) for row in rows], left=0) +
             ("\n![load of the servers, hand-overs](world.svg)\n" if has_figure else "") +
             "\n## Unit costs\n\n" + report.markdown(world_costs.COST_HEAD, world_costs.as_rows(costs)))

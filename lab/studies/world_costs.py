@@ -43,7 +43,7 @@ WHAT = {
     "updates_per_s": "per object that moves, at lod 0, 1, ...",
 }
 
-# clients, objects, moving, reach [m], ticks: all with a full interest of 1 m; without reach all are told of all
+# clients, objects, moving, reach [m], ticks: all with a full interest of 1 m; without reach all are sent all
 POINTS = [(16, 10_000, 10_000, reach, 200) for reach in (1, 2, 4, 8, 16, 32)] + [
     (4, 10_000, 10_000, 1, 200), (64, 10_000, 1000, 1, 200), (64, 10_000, 10, 1, 600), (64, 10_000, 1000, 8, 600),
     (16, 10_000, 0, 8, 1000), (16, 10_000, 0, 32, 1000), (64, 10_000, 0, 8, 1000), (64, 1000, 1000, 8, 600), (4, 100_000, 0, 8, 600),
@@ -63,7 +63,7 @@ def measure(progress):
     """out  rows of measured.csv, as text"""
     rows = []
     for clients, objects, moving, reach, ticks in POINTS:
-        point = program.point("scale", clients=clients, objects=objects, moving=moving, reach=reach, ticks=ticks, tells_moved=True,
+        point = program.point("scale", clients=clients, objects=objects, moving=moving, reach=reach, ticks=ticks, names_moved=True,
                               spread=reach > 0)
         lods, changes = near(clients, objects, moving, reach, ticks)
         down = point["down_per_client_and_tick"]
@@ -149,9 +149,9 @@ def fit(rows):
     bits, updates = 8000 * column["down_bytes_per_tick"], -1000 * numpy.log(1 - column["down_datagrams_per_tick"])
     idle_bits, idle_datagrams = bits[idle].mean(), updates[idle].mean()
     change_bit = ((bits[rest] - idle_bits) / (1000 * changes[rest])).mean()
-    told = (all_move & ~idle) | ~interest
-    bit_per_s = solve(lods[told], bits[told] - idle_bits - 1000 * change_bit * changes[told])
-    updates_per_s = solve(lods[told], updates[told] - idle_datagrams - 1000 * changes[told])
+    sent = (all_move & ~idle) | ~interest
+    bit_per_s = solve(lods[sent], bits[sent] - idle_bits - 1000 * change_bit * changes[sent])
+    updates_per_s = solve(lods[sent], updates[sent] - idle_datagrams - 1000 * changes[sent])
     big = objects >= 10_000
     out = dict(zip(("session_us", "truth_us", "truth_of_1000_us", "look_us", "tell_us", "packet_us", "packet_of_1000_us"), time))
     out |= {"physics_us": 1e6 * float(physics["tick_s"]) / float(physics["moving"]),

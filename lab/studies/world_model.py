@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A world of many users and objects on several servers, in virtual time: who walks where, what moves, of what each user is told, which server
+"""A world of many users and objects on several servers, in virtual time: who walks where, what moves, what is sent to each user, which server
 owns it, and what that costs by the unit costs of world_costs. One step is 200 ms, the time in which an encoder looks at all objects anew."""
 import dataclasses
 
@@ -204,10 +204,10 @@ class World:
         setting, costs, each = self.setting, self.costs, self.setting.users
         moves = numpy.zeros(setting.objects, bool)
         moves[moving] = True
-        told = moves[objects] & (levels < OUT)
-        lods = numpy.stack([numpy.bincount(users[told & (levels == level)], minlength=each) for level in range(LODS)])
+        sent = moves[objects] & (levels < OUT)
+        lods = numpy.stack([numpy.bincount(users[sent & (levels == level)], minlength=each) for level in range(LODS)])
         members = numpy.bincount(users[levels < OUT], minlength=each)
-        # Who comes to another server is told of all in its interest there.
+        # Who comes to another server is sent all in its interest there.
         changes = (numpy.bincount(users[changed], minlength=each) + numpy.where(gone_users, members, 0)) / TICKS
         ghosts = self._ghosts(moving)
         packets = datagrams(costs["updates_per_s"] @ lods + 1000 * changes)
@@ -221,7 +221,7 @@ class World:
                 "hand_over_users": int(gone_users.sum()), "hand_over_objects": gone_objects,
                 "clients": int(numpy.bincount(self.server, minlength=setting.servers).max())}
 
-    def _load(self, moving, ghosts, told, packets):
+    def _load(self, moving, ghosts, sent, packets):
         """[us] of each server in a tick: a row for each of PARTS. Keeps what cost where, for the next split."""
         costs, servers = self.costs, self.setting.servers
         own, clients = (numpy.bincount(of, minlength=servers) for of in (self.owner[moving], self.server))
@@ -230,9 +230,9 @@ class World:
         packets = packets * (costs["packet_us"] + costs["packet_of_1000_us"] * self.setting.objects / 1000)
         self.places = numpy.concatenate([self.objects[moving], self.users])
         self.weights = numpy.concatenate([numpy.full(len(moving), costs["physics_us"] + truth),
-                                          costs["session_us"] + looks[self.server] + costs["tell_us"] * told + packets])
+                                          costs["session_us"] + looks[self.server] + costs["tell_us"] * sent + packets])
         return numpy.stack([costs["physics_us"] * own, truth * (own + ghosts), costs["session_us"] * clients, looks * clients,
-                            costs["tell_us"] * numpy.bincount(self.server, told, servers),
+                            costs["tell_us"] * numpy.bincount(self.server, sent, servers),
                             numpy.bincount(self.server, packets, servers)])
 
     def _ghosts(self, moving):

@@ -11,7 +11,7 @@
 namespace tactus::sim::study {
 namespace {
 
-constexpr double kTouch = 0.02;      // [N] below it nothing is felt
+constexpr double kTouch = 0.02;      // [N] below it nothing counts as rendered
 constexpr std::int64_t kFree = 100;  // [ticks] without force, then energy is counted anew
 
 SimulationOptions options_of(const DelayCase& one) {
@@ -78,12 +78,12 @@ double quantile(std::vector<double>& values, double fraction) {
 
 DelayEffect effect_of(const std::vector<DelayTick>& delayed, const std::vector<DelayTick>& reference, double weber) {
   DelayEffect out;
-  std::vector<double> felt, wanted;
+  std::vector<double> rendered, wanted;
   double error = 0, square = 0;
   std::size_t outside = 0;
   for (std::size_t i = 0; i < reference.size(); ++i) {
     const double f = delayed[i].client, r = reference[i].client;
-    if (f > kTouch) felt.push_back(f);
+    if (f > kTouch) rendered.push_back(f);
     error += (f - r) * (f - r);
     square += r * r;
     out.lowest_energy = std::min(out.lowest_energy, delayed[i].energy);
@@ -97,9 +97,9 @@ DelayEffect effect_of(const std::vector<DelayTick>& delayed, const std::vector<D
     return v.empty() ? 0 : sum / static_cast<double>(v.size());
   };
   const auto peak = [](std::vector<double>& v) { return v.empty() ? 0 : quantile(v, 0.99); };
-  out.mean = mean(felt);
+  out.mean = mean(rendered);
   out.reference_mean = mean(wanted);
-  out.peak = peak(felt);
+  out.peak = peak(rendered);
   out.reference_peak = peak(wanted);
   out.outside = wanted.empty() ? 0 : static_cast<double>(outside) / static_cast<double>(wanted.size());
   out.rms = square > 0 ? std::sqrt(error / square) : NAN;

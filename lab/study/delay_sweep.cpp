@@ -58,11 +58,11 @@ double rms(const std::vector<double>& values) {
 
 double over(double value, double reference) { return reference > 0 ? value / reference - 1 : NAN; }
 
-DelayNumbers numbers(const DelayEffect& felt, const DelayEffect& played, std::vector<double> away, std::vector<double> apart) {
-  return {.mean = static_cast<float>(over(felt.mean, felt.reference_mean)),
-          .peak = static_cast<float>(over(felt.peak, felt.reference_peak)),
-          .outside = static_cast<float>(felt.outside),
-          .energy = static_cast<float>(felt.lowest_energy),
+DelayNumbers numbers(const DelayEffect& rendered, const DelayEffect& played, std::vector<double> away, std::vector<double> apart) {
+  return {.mean = static_cast<float>(over(rendered.mean, rendered.reference_mean)),
+          .peak = static_cast<float>(over(rendered.peak, rendered.reference_peak)),
+          .outside = static_cast<float>(rendered.outside),
+          .energy = static_cast<float>(rendered.lowest_energy),
           .force_error = static_cast<float>(played.rms),
           .seen = static_cast<float>(rms(away)),
           .most_seen = static_cast<float>(quantile(away, 0.95)),
@@ -85,12 +85,12 @@ tl::expected<DelayResult, Diagnostic> run_point(const Scene& scene, const DelayP
     if (kClients[c] == Clients::stiffness) one.compensation.emplace();
     if (kClients[c] >= Clients::simulation) one.compensation = SceneCompensation{.method = CompensationMethod::simulation};
     if (kClients[c] == Clients::misled) one.own = &wrong;
-    TACTUS_TRY(const DelayRun felt, run_delayed(scene, one));
+    TACTUS_TRY(const DelayRun rendered, run_delayed(scene, one));
     one.paths = &reference.paths;
     TACTUS_TRY(const DelayRun played, run_delayed(scene, one));
     for (std::size_t i = 0; i < scene.users.size(); ++i)
       out[c][i] =
-          numbers(effect_of(felt.users[i], reference.users[i], kWeber), effect_of(played.users[i], reference.users[i], kWeber),
+          numbers(effect_of(rendered.users[i], reference.users[i], kWeber), effect_of(played.users[i], reference.users[i], kWeber),
                   seen_away(played.users[i], reference.users[i]), seen_apart(scene, played));
   }
   return out;

@@ -52,7 +52,7 @@ double median(std::vector<double>& values) {
   return values[values.size() / 2];
 }
 
-/// Each of the moving objects swings and turns; once a second or so it is knocked onto another course.
+/// Each of the moving objects swings and turns; once a second or so it is knocked into another direction.
 class Motions {
  public:
   /// in  spacing  [m] between neighbours;  stride  from one that moves to the next
@@ -265,7 +265,7 @@ class World {
       while (auto bytes = users_[i].up.poll(now_)) in_.push_back({i + 1, std::move(*bytes)});
     const std::span<const RigidSample> objects = motions_.step();
     Truth truth{.objects = objects};
-    if (of_.tells_moved) truth.moved = motions_.moved();
+    if (of_.names_moved) truth.moved = motions_.moved();
     double submit = 0;
     const double before = cpu_time();
     const bool fine = tick_of(server_, now_, tick_++, truth, in_, out_, submit);

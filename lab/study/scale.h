@@ -18,10 +18,10 @@ struct ScaleCase {
   double loss = 0;             ///< fraction of datagrams, each way
   std::uint64_t way = 10'000;  ///< [us]
   Role role = Role::observer;
-  bool tells_moved = false;  ///< the server is told which objects have moved
+  bool names_moved = false;  ///< the server is given the objects that have moved
   bool spread =
       false;         ///< objects are 1 m apart instead of 0.1 m, those that move are all over them, and clients walk among them
-  double reach = 0;  ///< [m] of the clients' interest, in full up to 1 m; 0: they are told of all objects
+  double reach = 0;  ///< [m] of the clients' interest, in full up to 1 m; 0: they are sent all objects
 };
 
 struct ScaleResult {

@@ -23,7 +23,7 @@ struct Motion {
   TraceCoding coding{};
 };
 
-/// Three bodies that swing by 0.15 m and 34 deg at 0.5 to 1 Hz, without being told their angular velocity: 1 mm and 1 deg.
+/// Three bodies that swing by 0.15 m and 34 deg at 0.5 to 1 Hz, without their angular velocity: 1 mm and 1 deg.
 Motion swinging_bodies(std::int64_t ticks);
 
 /// Motions of many objects, 1 mm and 1 deg, in session_motions.cpp.   in  seed  of what is drawn

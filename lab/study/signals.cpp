@@ -93,8 +93,8 @@ class DeviceCoder {
     const double grid = kHalfDiagonal * std::ldexp(1.0, -receiver.scene()->grid.position);
     const double length = error / (coding.every_tick ? grid : std::max(coding.position, grid));
     if (!contact) return length;
-    const double felt = contact->stiffness * norm(contact->proxy - sample.position);
-    return std::max(length, contact->stiffness * error / (coding.weber_fraction * std::max(felt, RigidTriggers{}.force_floor)));
+    const double force = contact->stiffness * norm(contact->proxy - sample.position);
+    return std::max(length, contact->stiffness * error / (coding.weber_fraction * std::max(force, RigidTriggers{}.force_floor)));
   }
 
   struct Acknowledgement {
@@ -157,7 +157,7 @@ std::optional<DeviceContact> contact_of(const UserSample& user, std::span<const 
 }  // namespace
 
 struct SignalStudy::Impl {
-  /// What a recording tells of a user.
+  /// What a recording holds of a user.
   struct User {
     std::optional<Vec3> first;  // position
     bool moves = false, touches = false, feels = false;

@@ -19,7 +19,7 @@ constexpr double kOnset = 0.3;    // [s] in which the hand builds up its force
 constexpr double kPress = 1;      // [N]
 constexpr double kStart = -2e-3;  // [m] outside the object
 constexpr double kLimit = 40;     // [N] no device renders more: beyond it the interaction has diverged
-// "The human impedance is nearly zero" (thesis 4.3.2.1): the stylus lies on the fingers, its inertia and some skin are felt.
+// "The human impedance is nearly zero" (thesis 4.3.2.1): the stylus lies on the fingers, its inertia and some skin take part.
 constexpr Impedance kBarelyHeld{.mass = 0.05, .damping = 0.8, .stiffness = 5};
 
 struct Setting {
@@ -75,15 +75,15 @@ Outcome interact(const Setting& setting) {
     const double time = tick * kTick, x = hand.position();
     port.arrive({x, 0, 0});
     loop.step(std::array{x});
-    const double felt = loop.felt(0);
-    port.hold({felt, 0, 0});
-    if (tick % 2 == 0) out.series.rows.push_back({time, -felt, 1e3 * port.energy()});
-    if (-felt > kLimit) {
+    const double rendered = loop.rendered_force(0);
+    port.hold({rendered, 0, 0});
+    if (tick % 2 == 0) out.series.rows.push_back({time, -rendered, 1e3 * port.energy()});
+    if (-rendered > kLimit) {
       out.verdict = Verdict::diverges;
       break;
     }
     const double done = minimum_jerk(std::min(1.0, time / kOnset)).place;
-    hand.step(felt + done * kPress + setting.hand.stiffness * (kStart + done * (rest - kStart)));
+    hand.step(rendered + done * kPress + setting.hand.stiffness * (kStart + done * (rest - kStart)));
     const double speed = std::abs(hand.velocity());
     if (time > 1 && time < 2) early = std::max(early, speed);
     if (time > 3) late = std::max(late, speed);

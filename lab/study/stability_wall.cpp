@@ -113,7 +113,7 @@ Study study_wall(Extent extent, const Progress& progress) {
   study.text =
       "A spring of stiffness k_o and a damper b_o, computed once per sample from the device's position and held (thesis 2.2.2). "
       "*Passive*: a hand that yields to nothing drives the device (damping b_d) into the wall and out again, and the passivity "
-      "observer of `sim/user/passivity.h` tells whether more energy came out than went in. Theory is eq. 2.3, b_d > k_o T / 2, "
+      "observer of `sim/user/passivity.h` shows whether more energy came out than went in. Theory is eq. 2.3, b_d > k_o T / 2, "
       "eq. 2.4, b_d + b_o > k_o T / 2, for slow motion, and b_d > k_o T / 2 + b_o (Colgate and Schenkel) for every motion. "
       "*Stable*: device (50 g) and hand, solved exactly between samples, are tied to the wall, displaced and let go. Theory is "
       "Jury's criterion on the exactly discretised loop. With a grip, much stiffer walls are stable than passivity allows, "

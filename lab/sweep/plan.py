@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plans of sweeps: a command of the program, run once for every combination of parameters. reports/plans/README.md lists every key.
 
-A wrong plan is refused with all that is wrong in it: file, line, key, what is wrong, what mends it.
+A wrong plan is refused with all that is wrong in it: file, line, key, what is wrong, a remedy.
 """
 import itertools
 import math

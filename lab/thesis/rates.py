@@ -11,7 +11,7 @@ MEASURES = "packets_per_s", "packets_per_s_in_contact", "force_error_rms_N"
 
 
 def states(options, scene, deadband, interpolation, seed):
-    """A request: the client renders what it is told of the object."""
+    """A request: the client renders what it receives of the object."""
     return {"scene": scene, "sent": "states", "deadband": deadband, "visual_position_m": 0.01 * options.length_unit,
             "visual_rotation_rad": 4 * DEGREE, "interpolation": interpolation, "grip": options.grip, "seed": seed}  # bounds: 3.2.4.1
 
@@ -43,15 +43,15 @@ def architectures(options):
     found = over_seeds(options, requests)
     rows = [(p, *found[3 * i:3 * i + 3]) for i, p in enumerate(deadbands)]
     rate = lambda of: mean(of["packets_per_s"])
-    fewer = all(rate(told) < min(rate(held), rate(linear)) for _, told, held, linear in rows)
+    fewer = all(rate(sent) < min(rate(held), rate(linear)) for _, sent, held, linear in rows)
     report = head(options, "fig3.6") | {"scene": scene, "rows": [
-        {"deadband": p, "states": summary(told), "forces_held": summary(held), "forces_linear": summary(linear)}
-        for p, told, held, linear in rows], "states_need_fewer_packets": fewer}
-    cells = [[f"{100 * p:.0f} %"] + [plus_minus(of["packets_per_s"]) for of in (told, linear, held)]
-             + [plus_minus(of["force_error_rms_N"], 3) for of in (told, linear, held)] for p, told, held, linear in rows]
+        {"deadband": p, "states": summary(sent), "forces_held": summary(held), "forces_linear": summary(linear)}
+        for p, sent, held, linear in rows], "states_need_fewer_packets": fewer}
+    cells = [[f"{100 * p:.0f} %"] + [plus_minus(of["packets_per_s"]) for of in (sent, linear, held)]
+             + [plus_minus(of["force_error_rms_N"], 3) for of in (sent, linear, held)] for p, sent, held, linear in rows]
     text = lines(f"Thesis figure 3.6: packets per second to a client that is sent object states (CS-State) or forces (CS-Force), {scene}, "
                  f"seeds 1 to {options.seeds}", "One user here, two in the thesis, whose figure has no numbers.", "",
-                 table.aligned(["p", "CS-State", "CS-Force, linear", "CS-Force, hold", "felt error, state [N]", "linear [N]", "hold [N]"],
+                 table.aligned(["p", "CS-State", "CS-Force, linear", "CS-Force, hold", "force error, state [N]", "linear [N]", "hold [N]"],
                                cells), "",
                  f"CS-State needs fewer packets than CS-Force at every p: {'holds' if fewer else 'does not hold'}")
     return Made(report, text, lambda: draw_architectures(rows), {"fig3.6": rates_table(rows)})
@@ -251,14 +251,15 @@ def percent(value):
 
 
 SETTINGS_HEAD = ["setting", "packets/s", "+-", "faster hand", "+-", "thesis", "bit/s", "bytes/update", "rule broken", "visual broken",
-                 "shown over", "shown worst", "felt over JND"]
+                 "shown over", "shown worst", "force over JND"]
 SETTINGS_LEGEND = """
 rule broken     ticks in which the predicted state breaks the setting's haptic rule, all seeds and both hands together
 visual broken   ticks in which its position, and in which its rotation, breaks the visual threshold, the same
 The other columns are those of the scene's hand:
 shown over      fraction of the ticks in contact in which the shown state, smoothed or not, breaks the haptic rule
 shown worst     largest error in these ticks, as a multiple of the permitted error
-felt over JND   fraction of ticks in which the error of the rendered force is perceptible (more than 10 to 22 %)""".split("\n")
+ force over JND  fraction of ticks in which the error of the rendered force is perceptible (more than 10 to 22 %)""".split("
+")
 
 
 def settings_text(options, report, rows):

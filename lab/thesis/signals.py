@@ -17,10 +17,10 @@ def push(options, deadband, interpolation):
 
 
 def as_table(ticks):
-    head = ["time_s", "force_felt_N", "force_server_N", "position_m", "position_shown_m", "update"]
-    rows = zip(ticks["force_felt_N"], ticks["force_server_N"], ticks["position_m"], ticks["position_shown_m"], ticks["update"])
-    return head, [[f"{TICK * i:.3f}", f"{felt:.6g}", f"{server:.6g}", f"{at:.8g}", f"{shown:.8g}", update or ""]
-                  for i, (felt, server, at, shown, update) in enumerate(rows)]
+    head = ["time_s", "force_rendered_N", "force_server_N", "position_m", "position_shown_m", "update"]
+    rows = zip(ticks["force_rendered_N"], ticks["force_server_N"], ticks["position_m"], ticks["position_shown_m"], ticks["update"])
+    return head, [[f"{TICK * i:.3f}", f"{rendered:.6g}", f"{server:.6g}", f"{at:.8g}", f"{shown:.8g}", update or ""]
+                  for i, (rendered, server, at, shown, update) in enumerate(rows)]
 
 
 def times(ticks):
@@ -52,7 +52,7 @@ def traffic(options):
 def draw_traffic(ticks):
     fig, (above, below) = figure.panels(2)
     t = times(ticks)
-    above.plot(t, ticks["force_felt_N"], color=figure.COLOURS[0], label="force on the hand")
+    above.plot(t, ticks["force_rendered_N"], color=figure.COLOURS[0], label="force on the hand")
     above.set_ylabel("force along x [N]")
     below.plot(t, [1e3 * p for p in ticks["position_m"]], color="black", label="position of the cube")
     for number, why in enumerate(("haptic", "visual", "heartbeat")):
@@ -77,9 +77,9 @@ def interpolation(options):
 
 
 def jumps(ticks):
-    """Changes of the felt force from tick to tick: the largest, and the median where an update came."""
-    felt, updates = ticks["force_felt_N"], ticks["update"]
-    steps = [abs(after - before) for before, after in zip(felt, felt[1:])]
+    """Changes of the rendered force from tick to tick: the largest, and the median where an update came."""
+    rendered, updates = ticks["force_rendered_N"], ticks["update"]
+    steps = [abs(after - before) for before, after in zip(rendered, rendered[1:])]
     at_updates = [step for step, update in zip(steps, updates[1:]) if update]
     return {"updates": sum(u is not None for u in updates), "median_jump_N": statistics.median_high(at_updates) if at_updates else 0,
             "largest_jump_N": max(steps, default=0)}
@@ -89,7 +89,7 @@ def draw_interpolation(runs):
     fig, panels = figure.panels(2)
     for axes, (name, p, ticks) in zip(panels, runs):
         axes.plot(times(ticks), ticks["force_server_N"], color="0.6", linewidth=2.4, label="at the server")
-        axes.plot(times(ticks), ticks["force_felt_N"], color=figure.COLOURS[1], linewidth=0.9, label="felt at the client")
+        axes.plot(times(ticks), ticks["force_rendered_N"], color=figure.COLOURS[1], linewidth=0.9, label="rendered at the client")
         axes.set(title=f"{name} interpolation, p = {p}", ylabel="force along x [N]")
         axes.legend(loc="best")
     panels[-1].set_xlabel("time [s]")

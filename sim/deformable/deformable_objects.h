@@ -3,7 +3,7 @@
 ///
 ///   every tick         server   proxy on the surface x'_o as the last deformation left it: f_s = k_s (x_p - x_d)
 ///                      client   proxy on the same surface, when N > 1 on a cut-out of it that approaches it linearly over one
-///                               period (sim/contact/intermediate_model.h): f_c, felt by the hand
+///                               period (sim/contact/intermediate_model.h): f_c, rendered to the hand
 ///   every N-th tick    D_o      one step of T_n = N T_s under the mean of the forces -f_s of its N ticks, each spread over the
 ///                               corners of the triangle touched by its barycentric weights, and gravity
 ///                      T_c      its result is x'_o of the next period: the one-step delay of the loop (eqs. 4.36, 4.38)

@@ -71,16 +71,16 @@ class DeformableProbes {
   Touch touch(std::size_t user, const Vec3& device, See&& see) noexcept {
     User& probe = users_[user];
     std::optional<std::uint32_t> touched;
-    ProxyTouch felt;
+    ProxyTouch proxy_touch;
     for (std::uint32_t i = 0; i < stiffness_.size(); ++i) {
       const ProxyTouch touch = move(probe, i, see(i), device);
       if (!touch.touched || (touched && probe.touched != i)) continue;
       touched = i;
-      felt = touch;
+      proxy_touch = touch;
     }
     probe.placed = true;
     probe.touched = touched;
-    return result(touched, felt, device);
+    return result(touched, proxy_touch, device);
   }
 
   /// Announce a motion of the surface that they see.   in  reach [m] largest displacement of a vertex
@@ -103,7 +103,7 @@ class DeformableProbes {
     bool placed = false;
   };
   static ProxyTouch move(User& user, std::uint32_t object, const SeenSurface& seen, const Vec3& device) noexcept;
-  Touch result(std::optional<std::uint32_t> object, const ProxyTouch& felt, const Vec3& device) const noexcept;
+  Touch result(std::optional<std::uint32_t> object, const ProxyTouch& proxy_touch, const Vec3& device) const noexcept;
 
   std::vector<double> stiffness_;  // of each object's coupling [N/m]
   std::vector<User> users_;

@@ -23,10 +23,10 @@ std::vector<std::uint32_t> numbers(const TetMesh& mesh, const TetSurface& surfac
 }
 
 /// Each material once.   out  false: there are too many
-bool add_materials(const SceneDeformable& object, double told, ElasticBody& body) {
+bool add_materials(const SceneDeformable& object, double model_scale, ElasticBody& body) {
   for (std::size_t t = 0; t < object.mesh.tets.size(); ++t) {
     const SceneMaterial& m = object.materials[object.materials.size() == 1 ? 0 : t];
-    const ElasticMaterial material{told * m.young, m.poisson, m.density};
+    const ElasticMaterial material{model_scale * m.young, m.poisson, m.density};
     const auto known = std::ranges::find(body.materials, material);
     if (known == body.materials.end() && body.materials.size() == ElasticBody::kMaxMaterials) return false;
     body.material.push_back(static_cast<std::uint8_t>(known - body.materials.begin()));
@@ -47,8 +47,8 @@ bool choose_sub_steps(const SceneDeformable& object, const TriMesh& surface, int
 }  // namespace
 
 std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, const Vec3& gravity, const ElasticStep& step,
-                                              double told) {
-  if (!object.corotated || told == 0) return std::nullopt;
+                                              double model_scale) {
+  if (!object.corotated || model_scale == 0) return std::nullopt;
   const TetSurface surface = tactus::sim::surface(object.mesh);
   ElasticPhysics out{.body = {.inner = {},
                               .tets = object.mesh.tets,
@@ -61,7 +61,7 @@ std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, con
                               .coupling = object.stiffness,
                               .friction = object.friction,
                               .method = step.method}};
-  if (!add_materials(object, told, out.body)) return std::nullopt;
+  if (!add_materials(object, model_scale, out.body)) return std::nullopt;
   const std::vector<std::uint32_t> number = numbers(object.mesh, surface, out.inner);
   for (Tet& tet : out.body.tets)
     for (std::uint32_t& corner : tet) corner = number[corner];
@@ -70,7 +70,7 @@ std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, con
   out.body.fixed.erase(std::unique(out.body.fixed.begin(), out.body.fixed.end()), out.body.fixed.end());
   if (step.method == ElasticBody::Method::velocity_verlet && !choose_sub_steps(object, surface.mesh, step.sub_steps, out))
     return std::nullopt;
-  if (!SceneBuilder::can_work_out(out, surface.vertex.size())) return std::nullopt;
+  if (!SceneBuilder::can_compute(out, surface.vertex.size())) return std::nullopt;
   return out;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a client is told of a deformable object, so that it can work out what its own device does to it. spec/55-elastic.md
+/// What is declared to a client of a deformable object, so that it can compute what its own device does to it. spec/55-elastic.md
 #pragma once
 
 #include <optional>
@@ -12,13 +12,13 @@ namespace tactus::sim {
 /// How a client steps an object.
 struct ElasticStep {
   ElasticBody::Method method = ElasticBody::Method::tr_bdf2;
-  int sub_steps = 1;  ///< of velocity Verlet, at least; more where what is told is stiffer than the truth
+  int sub_steps = 1;  ///< of velocity Verlet, at least; more where what is declared is stiffer than the truth
 };
 
 /// in   step  the method that the server takes itself, or comes nearest to it
-///      told  times the true Young's modulus; 0: nothing is told
-/// out  nothing: as told, its elements do not turn, it has more than 255 materials, or it is too much for a client.
+///      model_scale  times the true Young's modulus; 0: nothing is declared
+/// out  nothing: none is to be declared, its elements do not turn, it has more than 255 materials, or it is too much for a client.
 std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, const Vec3& gravity, const ElasticStep& step,
-                                              double told = 1);
+                                              double model_scale = 1);
 
 }  // namespace tactus::sim

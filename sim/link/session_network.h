@@ -55,7 +55,7 @@ class SessionNetwork final : public Network {
   void leave() noexcept;
 
   SessionClient& client(std::size_t user) noexcept { return *users_[user].client; }
-  /// The offset is that of the clock of both ends, which is one, not of that which the server tells.
+  /// The offset is that of the clock of both ends, which is one, not of that which the server signals.
   SessionStatus status(std::size_t user) const noexcept {
     SessionStatus out = users_[user].client->status();
     if (out.clock_offset) *out.clock_offset += static_cast<std::int64_t>(now_ - server_->clock(now_));

@@ -63,7 +63,7 @@ double MsdLoop::feel(std::size_t index, double device, double received, double s
   user.penetration = penetration;
   const double resistance = stiffness * penetration + user.spec.client_damping * rate;
   const bool free = device == kAway || (options_.coupling == Coupling::pressing && (penetration <= 0 || resistance <= 0));
-  return user.felt = free ? 0 : -resistance;
+  return user.rendered = free ? 0 : -resistance;
 }
 
 void MsdLoop::end_tick() noexcept {

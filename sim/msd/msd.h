@@ -96,7 +96,7 @@ class MsdLoop {
   void end_tick() noexcept;
 
   /// Force on the hand of a user [N], positive into the object; after step().
-  double felt(std::size_t user) const noexcept { return users_[user].felt; }
+  double rendered_force(std::size_t user) const noexcept { return users_[user].rendered; }
   /// Surface as the server's forces use it [m].
   double surface() const noexcept { return server_.value; }
   /// Mean velocity of the surface over the last period [m/s].
@@ -126,7 +126,7 @@ class MsdLoop {
     MsdUser spec;
     Delay forward, backward;
     Intermediate model;
-    double penetration = 0, felt = 0, sent = 0;
+    double penetration = 0, rendered = 0, sent = 0;
   };
 
   MsdLoopOptions options_;

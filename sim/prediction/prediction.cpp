@@ -153,7 +153,7 @@ void Prediction::hear(std::size_t mesh, Shape displacements, unsigned position_e
 }
 
 void Prediction::correct(std::uint32_t delay) noexcept {
-  if (is_broken_) return tell_heard();
+  if (is_broken_) return show_heard();
   own_->observe();
   const TraceFrame& own = own_->frame();
   for (std::uint32_t i = 0; i < poses_.size(); ++i) pasts_[i].add(own.tick, without_corrections(i));
@@ -190,10 +190,10 @@ void Prediction::follow() noexcept {
     const Pose& own = own_->frame().objects[i].pose;
     move(i, heard_[i].position - own.position, turn_of(heard_[i].rotation * conjugate(own.rotation)));
   }
-  tell_heard();
+  show_heard();
 }
 
-void Prediction::tell_heard() noexcept {
+void Prediction::show_heard() noexcept {
   std::ranges::copy(heard_, poses_.begin());
   for (Mesh& mesh : meshes_) {
     mesh.is_new = mesh.past.heard_age() >= 0;

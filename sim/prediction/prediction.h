@@ -3,7 +3,7 @@
 ///
 /// The scene runs at the client as it does at the server, under the device of the client's own user; the pushes of the others on rigid
 /// objects come with the loads (load/load_state.h). So its state is what the server's will be when the device's sample of now has
-/// got there. What the server tells is R old, as an answer to the device, and is compared with the own state of R ago:
+/// got there. What the server sends is R old, as an answer to the device, and is compared with the own state of R ago:
 ///
 ///   rigid objects  e = server's pose - own pose of R ago, with all that was corrected since. In each tick the own pose follows by the
 ///                  fraction T_s / 0.1 s of e: no force jumps. Less than 0.1 mm and 2 mrad are the codec's, and left alone.
@@ -129,7 +129,7 @@ class Prediction {
   static Result<std::unique_ptr<Prediction>> create(const Scene& scene, std::size_t user);
 
   using Shape = std::span<const std::array<std::int32_t, 3>>;  ///< V x 3
-  /// What the server's state at the client is in this tick. What is not told stays.   no allocation
+  /// What the server's state at the client is in this tick. What is not sent stays.   no allocation
   /// in   tick  of the server
   void hear(std::uint32_t object, const Pose& pose, std::int64_t tick) noexcept;
   /// The newest shape of a deformable object.   in  displacements  [2^-position_exp m]
@@ -140,7 +140,7 @@ class Prediction {
   /// Correct the state of this tick by what was heard.   in  delay  [ticks] R; 0: not known, the state is that of the server
   /// no allocation
   void correct(std::uint32_t delay) noexcept;
-  std::span<const Pose> heard() const noexcept { return heard_; }  ///< poses, as they were told
+  std::span<const Pose> heard() const noexcept { return heard_; }  ///< poses, as they were received
   std::span<const Pose> poses() const noexcept { return poses_; }  ///< of this tick, one per rigid and one-dimensional object
   /// The shape of a deformable object that is new in this tick [2^-PastShapes::kExp m]; none: empty.
   Shape new_shape(std::size_t mesh) const noexcept { return meshes_[mesh].is_new ? meshes_[mesh].past.shown() : Shape(); }
@@ -161,7 +161,7 @@ class Prediction {
   Prediction(const Scene& scene, std::unique_ptr<Server> own);
   void show_own() noexcept;
   void follow() noexcept;
-  void tell_heard() noexcept;
+  void show_heard() noexcept;
   void correct_rigid(std::uint32_t object, std::int64_t then) noexcept;
   void correct_yielding(std::size_t object, std::int64_t then) noexcept;
   void correct_shape(std::size_t number, std::int64_t then) noexcept;

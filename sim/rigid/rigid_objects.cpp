@@ -56,7 +56,7 @@ std::vector<RigidProbe> make_probes(const Scene& scene, bool attended) {
 
 RigidObjects::RigidObjects(const Scene& scene, const RigidEffort& effort)
     : world_(scene, effort), probes_(make_probes(scene, true)), touches_(scene.users.size()), poses_(scene.objects.size()) {
-  if (!tells_loads(scene)) return;
+  if (!sends_loads(scene)) return;
   const std::size_t objects = scene.objects.size() + scene.msds.size(), users = scene.users.size();
   pushes_.resize(objects * users);
   pushing_.resize(objects * users);

@@ -77,7 +77,7 @@ class RigidObjects final : public Simulated {
   double energy(std::uint32_t object) const noexcept { return world_.energy(object); }  ///< [J] RigidWorld::energy
 
   /// Forces of the last step on every rigid and one-dimensional object of the scene, those on the latter zero; empty unless
-  /// tells_loads(scene).
+  /// sends_loads(scene).
   std::span<const ObjectLoad> loads() const noexcept { return loads_; }
 
  private:

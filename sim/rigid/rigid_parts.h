@@ -182,7 +182,7 @@ struct RigidWorld::Impl {
   int parts, iterations, part = 0;
   std::vector<Body> bodies;
   std::int64_t tick = 0;
-  bool tells_loads = false;
+  bool sends_loads = false;
   RestWatch watch;
   std::vector<Pose> moving;            // poses for it
   std::vector<std::uint32_t> awake;    // bodies, ascending
@@ -192,7 +192,7 @@ struct RigidWorld::Impl {
   // Of one step.
   std::vector<Pair> pairs;
   std::vector<dContact> touching;
-  std::vector<dJointFeedback> forces;                   // of them; empty unless loads are told
+  std::vector<dJointFeedback> forces;                   // of them; empty unless loads are sent
   std::vector<std::pair<double, std::uint32_t>> order;  // of those awake, along x
   std::vector<std::uint32_t> groups;                    // those awake, group by group
   std::vector<dContact> found;                          // of one pair
@@ -236,7 +236,7 @@ struct RigidWorld::Impl {
   rigid::Residual residual(const rigid::Group& group) const;
   void judge(const rigid::Group& group, const rigid::Residual& left);
   void judge_momentum(const rigid::Group& group);
-  void tell_loads();
+  void store_loads();
   void add_hold(const Pair& pair);
   // Motion (rigid_motion.cpp)
   void scale_pushes();

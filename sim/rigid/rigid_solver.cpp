@@ -54,7 +54,7 @@ void RigidWorld::Impl::attach(const Pair& pair) {
     }
     const dJointID joint = dJointCreateContact(world, contacts, &contact);
     dJointAttach(joint, first.handle, second ? second->handle : nullptr);
-    if (tells_loads) dJointSetFeedback(joint, &forces[i]);
+    if (sends_loads) dJointSetFeedback(joint, &forces[i]);
   }
 }
 
@@ -71,7 +71,7 @@ void RigidWorld::Impl::add_hold(const Pair& pair) {
 }
 
 /// Of the bodies that were stepped, before their own forces are forgotten.
-void RigidWorld::Impl::tell_loads() {
+void RigidWorld::Impl::store_loads() {
   for (const std::uint32_t i : awake) {
     Body& body = bodies[i];
     const Vec3 change = vec(dBodyGetLinearVel(body.handle)) - body.stepped.velocity;
@@ -229,7 +229,7 @@ void RigidWorld::Impl::step_groups() {
   const auto switch_all = [this](std::span<const std::uint32_t> which, void (*to)(dBodyID)) {
     for (const std::uint32_t i : which) to(bodies[i].handle);
   };
-  if (tells_loads) forces.assign(touching.size(), {});
+  if (sends_loads) forces.assign(touching.size(), {});
   const bool are_several = !groups.empty() && bodies[groups.front()].island != bodies[groups.back()].island;
   if (are_several) switch_all(groups, dBodyDisable);
   auto pair = pairs.begin();

@@ -37,7 +37,7 @@ RigidWorld::Impl::Impl(const Scene& scene, const RigidEffort& effort)
       h(kTick / effort.parts),
       parts(effort.parts),
       iterations(effort.iterations),
-      tells_loads(sim::tells_loads(scene)) {
+      sends_loads(sim::sends_loads(scene)) {
   dWorldSetContactSurfaceLayer(world, kSurfaceLayer);
   if (scene.floor) {
     floor_height = *scene.floor + kSurfaceLayer;
@@ -55,7 +55,7 @@ RigidWorld::Impl::Impl(const Scene& scene, const RigidEffort& effort)
   resting.reserve(bodies.size());
   pairs.reserve(8 * moving.size());
   touching.reserve(moving.size() * 2 * kMaxContacts);
-  if (tells_loads) forces.reserve(touching.capacity());
+  if (sends_loads) forces.reserve(touching.capacity());
   for (std::uint32_t i = 0; i < bodies.size(); ++i)
     if (bodies[i].handle) awake.push_back(i);
 }
@@ -212,7 +212,7 @@ tl::expected<void, Diagnostic> RigidWorld::Impl::step() {
   }
   step_groups();
   for (const std::uint32_t i : awake) end(bodies[i]);
-  if (tells_loads) tell_loads();
+  if (sends_loads) store_loads();
   for (const std::uint32_t i : awake) {
     bodies[i].pushed = bodies[i].push;
     const RigidSample s = sample(bodies[i]);

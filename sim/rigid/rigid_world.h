@@ -62,7 +62,7 @@ class RigidWorld {
     Vec3 external;  ///< [N] all but those of push(): gravity, contacts, damping
     Vec3 hold;      ///< along the normal of its contacts, as long as the sum of mu |f_n| [N]   spec/45-load.md 3
   };
-  const Load& load(std::uint32_t object) const noexcept;  ///< zero unless tells_loads(scene)
+  const Load& load(std::uint32_t object) const noexcept;  ///< zero unless sends_loads(scene)
   const RigidErrors& errors() const noexcept;             ///< of all steps so far
   /// [J] Kinetic energy of an object at this tick, and gravity's since its start.   time O(1)
   double energy(std::uint32_t object) const noexcept;

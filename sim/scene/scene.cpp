@@ -381,7 +381,7 @@ void set_tremor(Scene& scene, double rms) noexcept {
   for (SceneUser& user : scene.users) user.tremor = rms;
 }
 
-bool tells_loads(const Scene& scene) noexcept {
+bool sends_loads(const Scene& scene) noexcept {
   return scene.compensation && !scene.users.empty() &&
          std::ranges::any_of(scene.objects, [](const SceneObject& object) { return object.dof != Dof::none; });
 }
@@ -394,7 +394,7 @@ SceneBuilder scene_builder(const Scene& scene, std::span<const std::optional<Dri
     if (i < driven.size() && driven[i]) out.driven(*driven[i]);
   }
   for (const SceneMsd& msd : scene.msds) out.rigid(msd.name, {msd.position, {}}, msd.dof());
-  if (tells_loads(scene)) out.loads({.users = static_cast<std::uint8_t>(scene.users.size())});
+  if (sends_loads(scene)) out.loads({.users = static_cast<std::uint8_t>(scene.users.size())});
   return out;
 }
 

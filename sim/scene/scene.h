@@ -140,7 +140,7 @@ struct SceneUser {
   }
 };
 
-/// How far away clients are told of rigid objects. spec/44-interest.md section 1
+/// How far away rigid objects are sent to clients. spec/44-interest.md section 1
 struct SceneInterest {
   double full = 0;   ///< [m] in full up to here, with bounds twice as wide at twice the distance
   double reach = 0;  ///< [m] not at all beyond
@@ -154,7 +154,7 @@ struct Scene {
   std::optional<double> floor;                    ///< [m] height of a plane that carries the objects
   std::optional<SceneTouch> touch;                ///< set whenever there are users
   std::optional<SceneCompensation> compensation;  ///< none: loads are neither computed nor sent
-  std::optional<SceneInterest> interest;          ///< none: clients are told of all objects in full
+  std::optional<SceneInterest> interest;          ///< none: clients are sent all objects in full
   std::vector<SceneObject> objects;               ///< order of trace and stream
   std::vector<SceneMsd> msds;                     ///< in trace and stream after the objects, as objects of one degree of freedom
   std::vector<SceneDeformable> deformables;
@@ -185,7 +185,7 @@ void set_pace(Scene& scene, double pace) noexcept;
 void set_tremor(Scene& scene, double rms) noexcept;
 
 /// Whether clients need the forces on its objects: they make up for delay, and something can be pushed.
-bool tells_loads(const Scene& scene) noexcept;
+bool sends_loads(const Scene& scene) noexcept;
 
 /// The rigid objects of this scene for a sender: in order, at rest in their first poses; with loads if clients make up for delay.
 /// in   driven  what a client's device may move, one per rigid object; empty: nothing

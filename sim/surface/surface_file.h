@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Triangle meshes in OBJ, PLY, STL, OFF and glTF 2.0 files, read and written in double precision (STL holds single).
 ///
-/// What is used: coordinates and the corners of faces. What is told (notes): a number of facets that the size contradicts, bytes and lines behind
+/// What is used: coordinates and the corners of faces. What is reported (notes): a number of facets that the size contradicts, bytes and lines behind
 /// the last element, solids read as one, lines of other kinds than faces, a last line without its end. What does not matter: normals, colours,
-/// textures, materials, groups, names, other elements and properties of a PLY, the number of edges of an OFF, weights of vertices (told),
+/// textures, materials, groups, names, other elements and properties of a PLY, the number of edges of an OFF, weights of vertices (reported),
 /// cameras and lights of a glTF, its extras, names of nodes but for the one that is asked for, and bounds. A glTF may name files in its own folder and below, no others.
 ///
 /// rule      class           broken when

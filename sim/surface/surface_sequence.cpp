@@ -44,11 +44,11 @@ tl::expected<std::vector<std::string>, Diagnostic> surfaces_in(const std::string
     }
   }
   if (error) return broken(Errc::io, "R-SEQ-1", fs::is_regular_file(folder, ignored) ? "a file, not a folder" : "", folder);
-  const auto tell = [&notes](const std::vector<std::string>& names, const char* what) {
+  const auto note = [&notes](const std::vector<std::string>& names, const char* what) {
     if (!names.empty()) notes.add("", what, *std::min_element(names.begin(), names.end()), names.size());
   };
-  tell(backups, "a file is left out as hidden or a copy");
-  tell(others, "a file of another kind is left out");
+  note(backups, "a file is left out as hidden or a copy");
+  note(others, "a file of another kind is left out");
   if (files.empty()) return broken(Errc::invalid, "R-SEQ-2", "no .obj, .ply or .off file", folder);
   return files;
 }

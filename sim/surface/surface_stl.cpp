@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL: 3D Systems, "Stereolithography Interface Specification" (1988). The size tells binary files from text, not the word solid.
+// STL: 3D Systems, "Stereolithography Interface Specification" (1988). The size distinguishes binary files from text, not the word solid.
 #include <algorithm>
 #include <array>
 #include <bit>

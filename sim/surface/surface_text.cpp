@@ -85,7 +85,7 @@ class ObjReader {
     return {};
   }
 
-  /// What is left out is told unless it only says how things look and what they are called.
+  /// What is left out is reported unless it only says how things look and what they are called.
   void note_kind(std::string_view kind) {
     constexpr std::array<std::string_view, 14> kLooks{"vt",     "vn",     "vp",     "g",      "o",   "s",     "mg",
                                                       "usemtl", "mtllib", "usemap", "maplib", "lod", "bevel", "c_interp"};

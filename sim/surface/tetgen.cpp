@@ -113,7 +113,7 @@ class TetGen {
     return unfilled(Errc::io, "R-TGN-6", "");
   }
 
-  /// Why it failed. Its result does not tell, but a second run can look for facets that cut each other.
+  /// Why it failed. Its result does not say, but a second run can look for facets that cut each other.
   Diagnostic reason(const ProgramResult& failed) const {
     const auto asked = run("-dz");
     if (!asked) return asked.error();

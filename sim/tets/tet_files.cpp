@@ -38,7 +38,7 @@ tl::expected<NodeHeader, Diagnostic> read_node_header(Tokenizer& words) {
   return header;
 }
 
-/// The number at the front of a line. That of the first line tells whether numbering starts at 0 or 1.
+/// The number at the front of a line. That of the first line shows whether numbering starts at 0 or 1.
 Read expect_number(Tokenizer& words, std::size_t index, std::size_t& base) {
   std::size_t number = 0;
   TACTUS_CHECK(words.number(number));

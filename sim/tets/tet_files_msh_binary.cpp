@@ -32,11 +32,11 @@ class BinaryMsh {
     return tl::unexpected(Diagnostic{.error = fail(code, rule).value(), .detail = std::move(detail)});
   }
 
-  /// The number 1 tells the order of bytes.
+  /// The number 1 shows the order of bytes.
   Read read_order() {
     const std::uint64_t one = number(4);
     swapped_ = one == 0x01000000;
-    if (one != 1 && !swapped_) return broken(Errc::malformed, "R-TET-11", "the number that tells the order of bytes");
+    if (one != 1 && !swapped_) return broken(Errc::malformed, "R-TET-11", "the number that shows the order of bytes");
     (void)line();
     return expect("$EndMeshFormat");
   }

@@ -94,10 +94,10 @@ double depth_of(const std::vector<Press>& presses, double time, double frequency
   return kOutside;
 }
 
-Result<std::vector<Felt>> press(const Pressing& pressing) {
+Result<std::vector<PressForces>> press(const Pressing& pressing) {
   TACTUS_TRY(std::vector<Hand> hands, hands_of(pressing));
   MsdLoop loop = loop_of(pressing);
-  std::vector<Felt> out(hands.size());
+  std::vector<PressForces> out(hands.size());
   const auto ticks = static_cast<std::int64_t>(std::llround(pressing.duration / kPressingTick));
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     loop.begin_tick();

@@ -45,14 +45,14 @@ struct Pressing {
 };
 
 /// Of a user, tick by tick at 1 kHz, against the hand.
-struct Felt {
-  std::vector<double> client;  ///< [N] what the hand feels
+struct PressForces {
+  std::vector<double> client;  ///< [N] rendered to the hand
   std::vector<double> server;  ///< [N] rendered at the server from what arrived there
 };
 
 /// err  invalid_argument R-API-4: a delay is longer than StiffnessReduction::kMostDelay, lambda
 /// time O(users * duration)
-Result<std::vector<Felt>> press(const Pressing& pressing);
+Result<std::vector<PressForces>> press(const Pressing& pressing);
 
 // ==== rigid transparency ====
 // What delay does to the force of a client that pushes a rigid object simulated at the server, how much of it nobody feels, and which

@@ -137,7 +137,7 @@ void Hand::begin_phase(const Pose& object) noexcept {
   end_ = begin_ + ticks(phase.duration);
 }
 
-DeviceSample Hand::step(const Vec3& felt, const Pose& object) noexcept {
+DeviceSample Hand::step(const Vec3& rendered, const Pose& object) noexcept {
   begin_phase(object);
   const bool moving = tick_ < end_;
   const double duration = static_cast<double>(end_ - begin_) * kTick;
@@ -151,7 +151,7 @@ DeviceSample Hand::step(const Vec3& felt, const Pose& object) noexcept {
   aim_speed_ = norm(target.velocity);
 
   const Vec3 pull = impedance_.stiffness * (target.place - position_) + impedance_.damping * (target.velocity - velocity_);
-  const Vec3 force = only(pull + felt + tremor_.force(static_cast<double>(tick_) * kTick), user_.device.axes);
+  const Vec3 force = only(pull + rendered + tremor_.force(static_cast<double>(tick_) * kTick), user_.device.axes);
   velocity_ = velocity_ + (kTick / impedance_.mass) * force;
   position_ = position_ + kTick * velocity_;
   const bool held = moving && user_.path[next_ - 1].button;

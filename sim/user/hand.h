@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A virtual hand on a force-feedback device: a mass pulled by a spring and a damper toward a minimum-jerk path, with tremor.
-///   m x'' = k (x_t - x) + b (x_t' - x') + f_felt + f_tremor
-/// The felt force closes the loop. The device's reports are quantised by its encoders and smoothed (thesis 3.2.4.1).
+///   m x'' = k (x_t - x) + b (x_t' - x') + f_rendered + f_tremor
+/// The rendered force closes the loop. The device's reports are quantised by its encoders and smoothed (thesis 3.2.4.1).
 #pragma once
 
 #include <array>
@@ -97,10 +97,10 @@ class Hand {
   Hand(const SceneUser& user, Grip grip, std::uint64_t seed);
 
   /// Advance by one tick.
-  /// in   felt    [N] force on the hand since the last call, already clipped to the device's limit
+  /// in   rendered  [N] force on the hand since the last call, already clipped to the device's limit
   ///      object  the watched object as the user sees it
   /// time O(1), about 1 us (the tremor's sines); no allocation.
-  DeviceSample step(const Vec3& felt, const Pose& object) noexcept;
+  DeviceSample step(const Vec3& rendered, const Pose& object) noexcept;
 
   const HandImpedance& impedance() const noexcept { return impedance_; }
   const Vec3& position() const noexcept { return position_; }  ///< [m] of the hand itself, before the encoders

@@ -82,7 +82,7 @@ class PassivityController {
 };
 
 // ==== sampled limit ====
-// Stability limit of a virtual hand on a coupling: sampling and smoothing of the device delay the force felt.
+// Stability limit of a virtual hand on a coupling: sampling and smoothing of the device delay the rendered force.
 
 /// Largest stable stiffness k [N/m] of a spring from hand and device to a fixed point. For the simulated loop
 ///   m (x+ - 2 x + x-) / T^2 = -k_h x - b (x - x-) / T - k F x,   F the device's mean of N samples,
@@ -129,7 +129,7 @@ struct TouchSummary {
   std::uint64_t contacts = 0;  ///< begun
   std::uint32_t most_in_a_second =
       0;                     ///< contacts begun within one second: more than about ten is chattering, not the hand's motion
-  double largest_force = 0;  ///< [N] felt
+  double largest_force = 0;  ///< [N] rendered
   double largest_server_force = 0;  ///< [N] of the server
   double swing = 0;                 ///< [m] SwingMeter::largest, while the hand was to hold still
   /// [J] least net energy that the hand had put into the scene since a contact began, at most 0. A negative value means that the

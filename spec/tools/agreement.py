@@ -48,18 +48,18 @@ def numbers_of(book, wanted) -> dict:
 def prefix_findings(book):
     """Registry, section 2: every prefix with its chapters, or of the implementation."""
     text = section(book, "registry", "2")
-    told = {cells[i][2:]: cells[i + 1] for cells in rows(text) for i in (0, 3) if len(cells) > i + 1 and re.fullmatch(r"R-[A-Z]+", cells[i])}
+    stated = {cells[i][2:]: cells[i + 1] for cells in rows(text) for i in (0, 3) if len(cells) > i + 1 and re.fullmatch(r"R-[A-Z]+", cells[i])}
     for prefix, chapters in numbers_of(book, lambda row: row["chapter"]).items():
         if "-" in chapters:
-            given = re.findall(r"\((\d+) to (\d+)\)", told.get(prefix, ""))
+            given = re.findall(r"\((\d+) to (\d+)\)", stated.get(prefix, ""))
             numbers = {n for first, last in given for n in range(int(first), int(last) + 1)}
-            if prefix not in told or given and numbers != set(chapters["-"]):
-                yield f"registry, section 2: R-{prefix} is {told.get(prefix)!r}; rules.csv has {sorted(chapters['-'])}"
+            if prefix not in stated or given and numbers != set(chapters["-"]):
+                yield f"registry, section 2: R-{prefix} is {stated.get(prefix)!r}; rules.csv has {sorted(chapters['-'])}"
             continue
         whole = ", ".join(c if len(chapters) == 1 else f"{c} {ranges(n)}" for c, n in sorted(chapters.items()))
-        if told.get(prefix) != whole:
-            yield f"registry, section 2: R-{prefix} is of {told.get(prefix)}, by rules.csv of {whole}"
-    yield from (f"registry, section 2: R-{prefix} is no rule" for prefix in told if not any(r.startswith(f"R-{prefix}-") for r in book.rules))
+        if stated.get(prefix) != whole:
+            yield f"registry, section 2: R-{prefix} is of {stated.get(prefix)}, by rules.csv of {whole}"
+    yield from (f"registry, section 2: R-{prefix} is no rule" for prefix in stated if not any(r.startswith(f"R-{prefix}-") for r in book.rules))
 
 
 def expanded(text: str, all_of: dict) -> set:
@@ -77,14 +77,14 @@ def expanded(text: str, all_of: dict) -> set:
 def action_findings(book):
     """95, section 5: what a receiver does."""
     all_of = {prefix: [n for numbers in by.values() for n in numbers] for prefix, by in numbers_of(book, lambda row: "").items()}
-    told: dict = {}
+    stated: dict = {}
     for cells in rows(section(book, "95", "5")):
         if len(cells) == 3 and cells[0] in ("drop", "request_key", "close", "-"):
             for rule in expanded(cells[1], all_of):
-                told.setdefault(rule, []).append(cells[0])
+                stated.setdefault(rule, []).append(cells[0])
     for rule, row in book.rules.items():
-        if row["chapter"] != "-" and told.get(rule) != [row["action"]]:
-            yield f"95, section 5: {rule} has the action {told.get(rule)}, in rules.csv {row['action']}"
+        if row["chapter"] != "-" and stated.get(rule) != [row["action"]]:
+            yield f"95, section 5: {rule} has the action {stated.get(rule)}, in rules.csv {row['action']}"
 
 
 # ---- Numbers of the registry ----------------------------------------------------------------------------------------
@@ -97,9 +97,9 @@ def flag_findings(book):
     most = 2 ** len(bits) - 1
     if f"| R-STR-4 | `flags` is at most {most}. |" not in section(book, "20", "7"):
         yield f"20, section 7: R-STR-4 does not say that `flags` is at most {most}"
-    told = next((cells for cells in rows(section(book, "registry", "4")) if cells[0].startswith("`flags`")), [""] * 3)
-    if [int(bit) for bit in re.findall(r"bit (\d+):", told[1])] != bits or not told[2].startswith(f"bits {len(bits)}..15"):
-        yield f"registry, section 4: `flags` are {told[1]}, not assigned {told[2]}; 20, section 4 has bits 0..{len(bits) - 1}"
+    stated = next((cells for cells in rows(section(book, "registry", "4")) if cells[0].startswith("`flags`")), [""] * 3)
+    if [int(bit) for bit in re.findall(r"bit (\d+):", stated[1])] != bits or not stated[2].startswith(f"bits {len(bits)}..15"):
+        yield f"registry, section 4: `flags` are {stated[1]}, not assigned {stated[2]}; 20, section 4 has bits 0..{len(bits) - 1}"
     if [int(bit) for bit in re.findall(r"(\d+) \(", book.rules["R-STR-4"]["text"])] != bits:
         yield f"rules.csv: R-STR-4 does not name bits 0..{len(bits) - 1}"
     checks = {int(bit): place for bit, place in re.findall(r"^if bit (\d+) of flags is set: (.*)$", section(book, "20", "8"), re.M)}
@@ -121,7 +121,7 @@ def names_in(text: str) -> dict:
 
 def session_findings(book):
     """Forms, kinds, parts and reasons: 70, sections 2 and 3, registry."""
-    told = {re.sub(r" \(.*", "", cells[0]) + ("" if "70, section 3" not in cells[0] else " 3"): names_in(cells[1])
+    stated = {re.sub(r" \(.*", "", cells[0]) + ("" if "70, section 3" not in cells[0] else " 3"): names_in(cells[1])
             for cells in rows(section(book, "registry", "4")) if "(70, section" in cells[0]}
     two, three = section(book, "70", "2"), section(book, "70", "3")
     tables = list(rows(two))
@@ -132,8 +132,8 @@ def session_findings(book):
     reasons = {int(c[0]): c[1] for c in rows(three) if len(c) == 3 and re.fullmatch(r"\d", c[0])}
     for name, here in (("form of a datagram", forms), ("kind of a handshake", kinds), ("part `type` up", parts["up"]), ("part `type` down", parts["down"]),
                        ("`reason` 3", reasons)):
-        if told.get(name) != here:
-            yield f"registry, section 4: {name} is {told.get(name)}; 70 has {here}"
+        if stated.get(name) != here:
+            yield f"registry, section 4: {name} is {stated.get(name)}; 70 has {here}"
     for number, way in (("3.1", "down"), ("3.2", "up")):
         named = {cells[0] for cells in rows(section(book, "70", number)) if len(cells) == 3}
         yield from (f"70, section {number}: nothing says what the part {part} does" for part in parts[way].values() if part not in named)
@@ -156,8 +156,8 @@ def chapter_findings(book):
 def core_findings(book):
     """00: how many words the core has, with the sections of 00 that belong to it."""
     core = re.findall(r"\]\((\d\d)-[\w-]+\.md\)", section(book, "00", "5").split("**extension**")[0])
-    told = re.search(r"sections (\d) to (\d) here and the core \(section 5\): some (\d+) 000 words", book.by_short["00"].text)
-    first, last, thousands = (int(n) for n in told.groups()) if told else (1, 0, 0)
+    stated = re.search(r"sections (\d) to (\d) here and the core \(section 5\): some (\d+) 000 words", book.by_short["00"].text)
+    first, last, thousands = (int(n) for n in stated.groups()) if stated else (1, 0, 0)
     texts = [section(book, "00", str(n)) for n in range(first, last + 1)] + [book.by_short[short].text for short in core if short in book.by_short]
     words = sum(len(text.split()) for text in texts)
     if abs(words - 1000 * thousands) > 750:
@@ -174,9 +174,9 @@ def limit_findings(book, conformance: Path):
     least = [cells[1] for short, number in LIMITS for cells in rows(section(book, short, number)) if len(cells) == 3 and re.match(r"R-", cells[2])]
     readme = (conformance / "README.md").read_text(encoding="utf-8")
     sentence = re.search(r"A testee has these limits:(.*?)\n\n", readme, re.S)
-    told = limits_of(re.sub(r"\([^)]*\)", "", sentence.group(1))) if sentence else []
-    if told != least:
-        yield f"conformance/README.md: a testee's limits are {told}; 20, section 9, 50, section 1.5 and 55, section 1.3 have {least}"
+    stated = limits_of(re.sub(r"\([^)]*\)", "", sentence.group(1))) if sentence else []
+    if stated != least:
+        yield f"conformance/README.md: a testee's limits are {stated}; 20, section 9, 50, section 1.5 and 55, section 1.3 have {least}"
     states = re.search(r"^STATE_LIMIT, HEADER_LIMIT = 1 << (\d+), 1 << (\d+)", (conformance / "session.py").read_text(encoding="utf-8"), re.M)
     if states and [f"2^{states.group(2)}", f"2^{states.group(1)}"] != least[1:3]:
         yield f"conformance/session.py: joins with 2^{states.group(1)} and 2^{states.group(2)} bytes; 20, section 9 has {least[2]} and {least[1]}"
@@ -218,9 +218,9 @@ def suite_findings(book, conformance: Path):
             order.setdefault(kind, re.findall(r"`(\w+)`", cells[1]))
     yield from (f"conformance/README.md: no order of members for {kind}" for kind in KINDS if kind not in order)
     stems = json.loads((conformance / "manifest.json").read_text(encoding="utf-8"))["stems"]
-    told = [cells[0].strip("`") for cells in rows(section(book, "90", "1")) if len(cells) == 2 and re.fullmatch(r"`\w+`", cells[0])]
-    if sorted(told) != sorted(stems):
-        yield f"90, section 1: stems are {told}; the manifest has {list(stems)}"
+    stated = [cells[0].strip("`") for cells in rows(section(book, "90", "1")) if len(cells) == 2 and re.fullmatch(r"`\w+`", cells[0])]
+    if sorted(stated) != sorted(stems):
+        yield f"90, section 1: stems are {stated}; the manifest has {list(stems)}"
     wrong = set()
     for stem in stems:
         for line in (conformance / "vectors" / f"{stem}.answers").read_text(encoding="ascii").splitlines():

@@ -89,7 +89,7 @@ class Book:
             table("rule | what must hold | class | action | defined in", (
                 f"{r['rule']} | {r['text']} | {classes(r)} | {r['action']} | {place.get(r['rule'], '?')}" for r in of_format)),
             "## 2 Rules of the reference implementation\n\nThey concern calls, recordings, scenes and meshes, not streams. "
-            "Registry, section 2 tells the prefixes apart.\n",
+            "Registry, section 2 distinguishes the prefixes.\n",
             table("rule | what must hold | class | remedy", (
                 f"{r['rule']} | {r['text']} | {classes(r)} | {r['remedy']}" for r in of_library))))
 
@@ -131,9 +131,9 @@ class Book:
             if row is None:
                 yield f"{chapter.name}: {rule} is not in rules.csv"
                 continue
-            told = {word for word in re.findall(r"\w+", classes) if word in self.classes}
-            if told != set(row["class"].split("|")):
-                yield f"{rule}: {chapter.name} says {sorted(told)}, rules.csv {row['class']}"
+            stated = {word for word in re.findall(r"\w+", classes) if word in self.classes}
+            if stated != set(row["class"].split("|")):
+                yield f"{rule}: {chapter.name} says {sorted(stated)}, rules.csv {row['class']}"
             if row["chapter"] != chapter.short:
                 yield f"{rule}: defined in {chapter.name}, but rules.csv names chapter {row['chapter']}"
         for rule, row in self.rules.items():

@@ -100,17 +100,17 @@ def main() -> int:
             (Path(scratch) / name).write_text(text, encoding="utf-8")
         spec = Path(scratch) / "spec"
         shutil.copytree(SPEC, spec)
-        status, told = check(spec)
+        status, printed = check(spec)
         if status != 0:
-            print(f"the specification itself: {told}")
+            print(f"the specification itself: {printed}")
             wrong += 1
         for name, text, fault, word in FAULTS:
             path = spec / name
             good = path.read_text(encoding="utf-8")
             path.write_text(good.replace(text, fault, 1), encoding="utf-8")
-            status, told = check(spec)
-            if text not in good or status != 1 or (word or fault) not in told:
-                print(f"{name}, {fault!r}: {status}, {told}")
+            status, printed = check(spec)
+            if text not in good or status != 1 or (word or fault) not in printed:
+                print(f"{name}, {fault!r}: {status}, {printed}")
                 wrong += 1
             path.write_text(good, encoding="utf-8")
     print(f"{len(FAULTS)} faults, {wrong} wrong")

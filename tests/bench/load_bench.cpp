@@ -19,21 +19,21 @@ void load_ticks(benchmark::State& state) {
   const auto objects = static_cast<std::size_t>(state.range(0));
   SceneBuilder builder;
   for (std::size_t i = 0; i < objects; ++i) builder.rigid("o" + std::to_string(i));
-  const bool tells = state.range(1) == 1;
-  if (tells) builder.loads({.users = kUsers});
+  const bool has_loads = state.range(1) == 1;
+  if (has_loads) builder.loads({.users = kUsers});
   const SharedScene scene = builder.build().value();
   auto sender = Sender::create(scene).value();
   auto receiver = Receiver::create(scene).value();
   const std::vector<RigidSample> still(objects);
   std::vector<Vec3> pushes(kUsers), nobody(kUsers);
-  std::vector<ObjectLoad> loads(tells ? objects : 0, ObjectLoad{{}, {0, 0, 1.3}, nobody});
-  if (tells) loads[0].pushes = pushes;
+  std::vector<ObjectLoad> loads(has_loads ? objects : 0, ObjectLoad{{}, {0, 0, 1.3}, nobody});
+  if (has_loads) loads[0].pushes = pushes;
   std::int64_t tick = 0;
   std::uint64_t packets = 0, bytes = 0;
   for (auto _ : state) {
     const double force = 1 + std::sin(3e-3 * static_cast<double>(tick));
     pushes[0].x = force;
-    if (tells) loads[0].external.x = -force;
+    if (has_loads) loads[0].external.x = -force;
     const auto sent = sender.encode(tick++, {.objects = still, .loads = loads});
     for (const Packet& packet : sent.value_or(std::span<const Packet>())) {
       benchmark::DoNotOptimize(receiver.push(packet.bytes).has_value());

@@ -72,7 +72,7 @@ TEST(CDecoder, TheEndOfAFileIsNoError) {
   EXPECT_EQ(error.rule, nullptr);
 }
 
-TEST(CDecoder, ReceiverTellsUpdatesAndAdvice) {
+TEST(CDecoder, ReceiverReportsUpdatesAndAdvice) {
   const Scene scene = make_scene();
   const Sender sender = make_sender(scene);
   const Receiver receiver = make_receiver(scene);
@@ -114,7 +114,7 @@ TEST(CDecoder, ReceiverTellsUpdatesAndAdvice) {
   EXPECT_EQ(sent, received);
 }
 
-TEST(CDecoder, SceneTellsWhatItHolds) {
+TEST(CDecoder, SceneReportsWhatItHolds) {
   const Scene scene = make_scene(true);
   tactus_scene_info info = sized<tactus_scene_info>();
   ASSERT_EQ(tactus_scene_get(scene.get(), &info, nullptr), TACTUS_OK);

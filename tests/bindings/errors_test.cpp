@@ -83,7 +83,7 @@ TEST(CErrors, SceneRefuses) {
   EXPECT_REFUSED(kBad, tactus_scene_get_rigid_bounds, nullptr, &bounds);
 }
 
-TEST(CErrors, BuilderTellsFigures) {
+TEST(CErrors, BuilderReportsFigures) {
   const auto refused = [](const tactus_scene_options& options, const tactus_pose* pose, bool declares_bounds, const char* rule) {
     tactus_scene_builder* raw = nullptr;
     EXPECT_EQ(tactus_scene_builder_create(&options, &raw, nullptr), TACTUS_OK);

@@ -136,7 +136,7 @@ TEST(CSession, BringsSceneStatesAndDevice) {
   EXPECT_LE(fraction, 1);
 }
 
-TEST(CSession, TellsSeatsAndLetsClientsComeBack) {
+TEST(CSession, SignalsSeatsAndLetsClientsComeBack) {
   Ends ends(nullptr, TACTUS_ROLE_PARTICIPANT, 2);
   Truth truth;
   ASSERT_EQ(tactus_client_open(ends.client.get(), 0, 2, nullptr), TACTUS_OK);
@@ -156,7 +156,7 @@ TEST(CSession, TellsSeatsAndLetsClientsComeBack) {
   EXPECT_EQ(ends.status(false).client, 0u);
 }
 
-TEST(CSession, TellsOfWhatIsNear) {
+TEST(CSession, SendsWhatIsNear) {
   auto options = filled<tactus_scene_options_init, tactus_scene_options>();
   options.interest_full = 0.5;
   options.interest_reach = 2;

@@ -43,8 +43,8 @@ class Block {
   Block(const SizedCall& of, std::size_t size) : bytes_(std::max(size, sizeof(std::uint32_t)) + kGuard, kTouched) {
     std::fill(bytes_.begin(), bytes_.end() - kGuard, std::uint8_t{0});
     const bool is_made = of.init && of.init(data(), size) == TACTUS_OK;
-    const auto told = static_cast<std::uint32_t>(size);
-    if (!is_made) std::memcpy(data(), &told, sizeof told);
+    const auto stated = static_cast<std::uint32_t>(size);
+    if (!is_made) std::memcpy(data(), &stated, sizeof stated);
   }
   std::uint8_t* data() { return bytes_.data(); }
   bool is_whole() const {
@@ -92,9 +92,9 @@ inline void check_sizes(const SizedCall& of) {
     EXPECT_EQ(of.init(bytes.data(), size), fits ? TACTUS_OK : TACTUS_INVALID_ARGUMENT) << of.name << " of " << size;
     EXPECT_TRUE(std::all_of(bytes.end() - 8, bytes.end(), [](std::uint8_t byte) { return byte == 0xee; })) << of.name;
     if (!fits) continue;
-    std::uint32_t told = 0;
-    std::memcpy(&told, bytes.data(), sizeof told);
-    EXPECT_EQ(told, size) << of.name;
+    std::uint32_t stated = 0;
+    std::memcpy(&stated, bytes.data(), sizeof stated);
+    EXPECT_EQ(stated, size) << of.name;
     for (std::size_t i = now; i < size; ++i) ASSERT_EQ(bytes[i], 0) << of.name;
   }
 }

@@ -39,8 +39,8 @@ using Sized =
 /// On the heap, where a sanitizer sees what goes beyond.
 std::vector<std::uint8_t> block(std::size_t size, std::uint8_t filling) {
   std::vector<std::uint8_t> out(size, filling);
-  const auto told = static_cast<std::uint32_t>(size);
-  std::memcpy(out.data(), &told, sizeof told);
+  const auto stated = static_cast<std::uint32_t>(size);
+  std::memcpy(out.data(), &stated, sizeof stated);
   out.shrink_to_fit();
   return out;
 }
@@ -147,13 +147,13 @@ TEST_F(CSizes, OfBounds) {
            {"load_bounds", 24, Direction::option, initialised<tactus_load_bounds_init, tactus_load_bounds>(),
             taking<tactus_load_bounds>(
                 [&](auto*b, auto*e) { return tactus_scene_builder_declare_bounds(raw, nullptr, nullptr, b, e); })},
-           {"rigid_bounds told", 80, Direction::answer, {}, taking<tactus_rigid_bounds>([&](auto*b, auto*e) {
+           {"rigid_bounds declared", 80, Direction::answer, {}, taking<tactus_rigid_bounds>([&](auto*b, auto*e) {
               return tactus_scene_get_rigid_bounds(of, b, e);
             })},
-           {"deformable_bounds told", 40, Direction::answer, {}, taking<tactus_deformable_bounds>([&](auto*b, auto*e) {
+           {"deformable_bounds declared", 40, Direction::answer, {}, taking<tactus_deformable_bounds>([&](auto*b, auto*e) {
               return tactus_scene_get_deformable_bounds(of, 0, b, e);
             })},
-           {"load_bounds told", 24, Direction::answer, {}, taking<tactus_load_bounds>([&](auto*b, auto*e) {
+           {"load_bounds declared", 24, Direction::answer, {}, taking<tactus_load_bounds>([&](auto*b, auto*e) {
               return tactus_scene_get_load_bounds(of, b, e);
             })}})
     check_sizes(call);
@@ -230,7 +230,7 @@ TEST_F(CSizes, OfAnEncoder) {
     tactus_sender_destroy(out);
     return status;
   };
-  const auto tell = [&](auto* info, auto* error) {
+  const auto info_of = [&](auto* info, auto* error) {
     std::uint8_t bytes[4096];
     std::size_t size = 0;
     return tactus_sender_packet(sender.get(), 0, info, bytes, sizeof bytes, &size, error);
@@ -266,7 +266,7 @@ TEST_F(CSizes, OfAnEncoder) {
             initialised<tactus_truth_init, tactus_truth>(),
             taking<tactus_truth>(encode_nothing),
             {88}},
-           {"packet_info", 64, Direction::answer, {}, taking<tactus_packet_info>(tell)}})
+           {"packet_info", 64, Direction::answer, {}, taking<tactus_packet_info>(info_of)}})
     check_sizes(call);
 }
 

@@ -66,16 +66,16 @@ def test_sender_and_receiver_agree():
 
 def test_what_moved_may_be_named():
     with tactus.build_scene([tactus.RigidObject("cube"), tactus.RigidObject("ball")]) as scene:
-        compares, told, misled = (tactus.Sender(scene) for _ in range(3))
+        compares, informed, misled = (tactus.Sender(scene) for _ in range(3))
         rows = np.zeros((2, 13))
         rows[:, 3] = 1
         for tick in range(500):
             rows[0] = swing(tick)[0]
             packets = compares.encode(tick, rows)
-            assert [p.data for p in told.encode(tick, rows, moved=[0])] == [p.data for p in packets]
+            assert [p.data for p in informed.encode(tick, rows, moved=[0])] == [p.data for p in packets]
             assert not misled.encode(tick, rows, moved=()) or tick == 0
         with pytest.raises(ValueError):
-            told.encode(500, rows, moved=[[0]])
+            informed.encode(500, rows, moved=[[0]])
 
 
 def test_a_mesh_keeps_its_bound():
@@ -320,9 +320,9 @@ def test_what_a_device_drives_and_deforms():
         with pytest.raises(ValueError, match=said):
             tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=dataclasses.replace(body, **change))])
     explicit = dataclasses.replace(body, method="velocity-verlet", sub_steps=40)
-    told = tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=explicit)]).to_bytes()
-    assert len(told) == len(tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=body)]).to_bytes()) + 1
-    assert tactus.Scene(told).to_bytes() == told
+    declared = tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=explicit)]).to_bytes()
+    assert len(declared) == len(tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=body)]).to_bytes()) + 1
+    assert tactus.Scene(declared).to_bytes() == declared
     for change, rule in (({"method": "velocity-verlet"}, "R-ELA-5"), ({"coupling": 0}, "R-ELA-2"), ({"fixed": [5]}, "R-ELA-3"), ({"tets": [[0, 2, 1, 4], *body.tets[1:]]}, "R-ELA-4")):
         with pytest.raises(tactus.Error) as refused:
             tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=dataclasses.replace(body, **change))])
@@ -337,8 +337,8 @@ def test_clusters_of_a_mesh(traces):
     trace = tactus.read_trace(traces / "mesh.mcap")
     mesh = tactus.find_clusters(trace.meshes[0], trace.shapes[0][1][:40], 8)
     assert mesh.clusters.shape == (714,) and 1 < mesh.clusters.max() + 1 <= 8 and mesh.blend > 0
-    told = tactus.build_scene(meshes=[mesh]).meshes[0]
-    assert (told.clusters == mesh.clusters).all() and told.blend == mesh.blend and told.modes == 0
+    declared = tactus.build_scene(meshes=[mesh]).meshes[0]
+    assert (declared.clusters == mesh.clusters).all() and declared.blend == mesh.blend and declared.modes == 0
     assert tactus.build_scene(meshes=trace.meshes).meshes[0].clusters is None
     with pytest.raises(ValueError, match="not \\(S, 714, 3\\)"):
         tactus.find_clusters(mesh, np.zeros((2, 713, 3)), 8)
@@ -357,11 +357,11 @@ def test_comparison_equals_that_of_the_program(traces, tmp_path):
     stream, replica = tmp_path / "s.tct", tmp_path / "r.mcap"
     stream.write_bytes(tactus.encode(traces / "rigid.mcap", tactus.RigidBounds(**BOUNDS)))
     program("decode", stream, "-o", replica, "--like", traces / "rigid.mcap", "-q")
-    told = json.loads(program("compare", traces / "rigid.mcap", replica, "--json"))
+    printed = json.loads(program("compare", traces / "rigid.mcap", replica, "--json"))
     found = tactus.compare(traces / "rigid.mcap", stream)
     assert found.holds and found.position.ticks == 3000
-    assert f"{found.position.max:.9g}" in {f"{number:.9g}" for number in numbers_of(told)}
-    assert f"{found.force.rms:.9g}" in {f"{number:.9g}" for number in numbers_of(told)}
+    assert f"{found.position.max:.9g}" in {f"{number:.9g}" for number in numbers_of(printed)}
+    assert f"{found.force.rms:.9g}" in {f"{number:.9g}" for number in numbers_of(printed)}
     mesh = tactus.compare(traces / "mesh.mcap", tactus.encode(traces / "mesh.mcap")).meshes[0]
     assert mesh.violations == 0 and mesh.frames > 40 and 0.9 < mesh.worst_ratio <= 1
     assert not tactus.compare(traces / "rigid.mcap", stream, tactus.RigidBounds(visual_position=1e-5)).holds
@@ -393,9 +393,9 @@ def test_traces_are_arrays(traces):
 @needs_program
 def test_which_forces_a_trace_knows(traces, tmp_path):
     both = tactus.read_trace(traces / "rigid.mcap")
-    assert both.known_forces == [{"felt", "server"}]
+    assert both.known_forces == [{"rendered", "server"}]
     rows = list(csv.reader(program("export", "csv", traces / "rigid.mcap").splitlines()))
-    for unknown, known, seen in (("force", "server", both.users["server_force"]), ("server_force", "felt", both.force)):
+    for unknown, known, seen in (("force", "server", both.users["server_force"]), ("server_force", "rendered", both.force)):
         kept = [i for i, name in enumerate(rows[0]) if f"/{unknown}_" not in name]
         assert len(kept) == len(rows[0]) - 3
         (tmp_path / "t.csv").write_text("".join(",".join(row[i] for i in kept) + "\n" for row in rows))
@@ -425,8 +425,8 @@ def test_the_same_program_in_c_and_python(traces, tmp_path):
 @pytest.mark.skipif(importlib.util.find_spec("matplotlib") is None, reason="needs matplotlib: apt-get install python3-matplotlib")
 def test_figure_of_the_thesis(traces, tmp_path):
     command = [sys.executable, str(ROOT / "examples/figure_3_14.py")]
-    told = subprocess.run([*command, "figure.svg", traces / "rigid.mcap"], check=True, capture_output=True, text=True, cwd=tmp_path).stdout
-    rate = {line.split()[0]: float(line.split()[1]) for line in told.splitlines()[1:-1]}
+    printed = subprocess.run([*command, "figure.svg", traces / "rigid.mcap"], check=True, capture_output=True, text=True, cwd=tmp_path).stdout
+    rate = {line.split()[0]: float(line.split()[1]) for line in printed.splitlines()[1:-1]}
     assert len(rate) == 11 and rate["S4_NI"] > rate["S8_NI"] > rate["S30_NI"] and rate["S4_WI"] > rate["S30_WI"] > 0
     drawn = (tmp_path / "figure.svg").read_text()
     assert "<svg" in drawn and all(name in drawn for name in rate)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// tactus_trace.h tells what the C++ library tells of a trace, and refuses what is wrong.
+/// tactus_trace.h returns what the C++ library returns of a trace, and refuses what is wrong.
 #include <tactus_trace.h>
 
 #include <tactus/metrics/deformable_errors.h>
@@ -58,7 +58,7 @@ class CTrace : public ::testing::Test {
   TempFile file;
 };
 
-TEST_F(CTrace, TellsWhatTheTraceHolds) {
+TEST_F(CTrace, ReportsWhatTheTraceHolds) {
   const Trace trace = open(file.path());
   auto info = sized<tactus_trace_info>();
   ASSERT_EQ(tactus_trace_get(trace.get(), &info, nullptr), TACTUS_OK);
@@ -94,18 +94,18 @@ TEST_F(CTrace, TellsWhatTheTraceHolds) {
   EXPECT_EQ(corners[5], 3u);
 }
 
-TEST_F(CTrace, TellsWhichForcesOfAUserItKnows) {
-  const std::pair<KnownForces, std::uint32_t> cases[] = {{KnownForces::both, TACTUS_FORCE_FELT | TACTUS_FORCE_SERVER},
-                                                         {KnownForces::felt, TACTUS_FORCE_FELT},
+TEST_F(CTrace, ReturnsWhichForcesOfAUserItKnows) {
+  const std::pair<KnownForces, std::uint32_t> cases[] = {{KnownForces::both, TACTUS_FORCE_RENDERED | TACTUS_FORCE_SERVER},
+                                                         {KnownForces::rendered, TACTUS_FORCE_RENDERED},
                                                          {KnownForces::server, TACTUS_FORCE_SERVER}};
-  for (const auto& [known, told] : cases) {
+  for (const auto& [known, given] : cases) {
     recording.info.users[1].forces = known;
     const TempFile again;
     write_recording(recording, again.path());
     const Trace trace = open(again.path());
     auto user = sized<tactus_trace_user>();
     ASSERT_EQ(tactus_trace_get_user(trace.get(), 1, &user, nullptr), TACTUS_OK);
-    EXPECT_EQ(user.forces, told);
+    EXPECT_EQ(user.forces, given);
   }
 }
 
@@ -210,15 +210,15 @@ TEST_F(CTrace, ErrorsAreThoseOfTheLibrary) {
   for (const TraceFrame& frame : recording.frames) {
     ASSERT_TRUE(go_on(trace, tick));
     std::vector<Pose> poses;
-    tactus_pose told[2];
+    tactus_pose given[2];
     for (std::size_t i = 0; i < 2; ++i) {
       Pose pose = frame.objects[i].pose;
       pose.position.x += 1e-4 * static_cast<double>(frame.tick);
       poses.push_back(pose);
       const auto& [p, q] = pose;
-      told[i] = {{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}};
+      given[i] = {{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}};
     }
-    ASSERT_EQ(tactus_errors_add(raw, trace.get(), told, 2, nullptr), TACTUS_OK);
+    ASSERT_EQ(tactus_errors_add(raw, trace.get(), given, 2, nullptr), TACTUS_OK);
     rigid.add(frame, poses);
     const tactus_status added = tactus_errors_add_shape(raw, trace.get(), 0, shown.data(), 4, nullptr);
     ASSERT_EQ(added, frame.meshes[0].updated ? TACTUS_OK : TACTUS_NOTHING);

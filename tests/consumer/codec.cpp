@@ -53,7 +53,7 @@ const char* send_and_receive() {
     if (!packets) return "the truth is refused";
     for (const tactus::Packet& packet : *packets) {
       haptic += packet.layer == tactus::Layer::haptic ? 1 : 0;
-      if (tick == 2 && packet.layer == tactus::Layer::visual) {  // the network is slow: what is not felt can do without
+      if (tick == 2 && packet.layer == tactus::Layer::visual) {  // the network is slow: what is not touched can do without
         sender->forget_last(packet.substream);
         ++dropped;
       } else if (const auto decoded = receiver->push(packet.bytes); decoded) {

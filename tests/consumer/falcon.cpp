@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A user of the component falcon: looks for a device, and is told what to do when it cannot be opened.
+/// A user of the component falcon: looks for a device, and prints what to do when it cannot be opened.
 #include <tactus/device/falcon/falcon_device.h>
 
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A user of the component hid: looks for a device, and is told what to do when it cannot be opened.
+/// A user of the component hid: looks for a device, and prints what to do when it cannot be opened.
 #include <tactus/device/hid/hid_device.h>
 
 #include <cstdio>

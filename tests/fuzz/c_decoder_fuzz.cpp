@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any bytes as a stream file through the C interface: the scene tells what it holds, the player plays, and a receiver of the scene that
+/// Any bytes as a stream file through the C interface: the scene returns what it holds, the player plays, and a receiver of the scene that
 /// is given the same packets says and shows the same.
 #include <limits>
 #include <vector>
@@ -10,7 +10,7 @@ namespace {
 
 using namespace tactus::c_fuzz;
 
-/// All that a scene tells, each into a buffer of exactly its size; one that is too small is refused.
+/// All that a scene returns, each into a buffer of exactly its size; one that is too small is refused.
 void look(const tactus_scene* scene) {
   auto info = sized<tactus_scene_info>();
   auto bounds = sized<tactus_deformable_bounds>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any constants, materials and tetrahedra as an elastic body, any device that touches it: both ends work out the same, and nothing breaks.
+/// Any constants, materials and tetrahedra as an elastic body, any device that touches it: both ends compute the same, and nothing breaks.
 #include <bit>
 #include <cmath>
 #include <memory>
@@ -65,7 +65,7 @@ DeformableObject object(ByteReader& in) {
 }
 
 /// Tetrahedra that are inside out are turned, and those without volume left out, so that more bodies are whole.
-void mend(DeformableObject& object) {
+void repair(DeformableObject& object) {
   ElasticBody& body = *object.body;
   std::vector<ElasticBody::Tet> tets;
   std::vector<std::uint8_t> material;
@@ -99,7 +99,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ByteReader in({data, size});
   SceneSpec spec;
   spec.deformables.push_back(object(in));
-  if (in.u8() % 8 != 0) mend(spec.deformables[0]);
+  if (in.u8() % 8 != 0) repair(spec.deformables[0]);
   const auto scene = Scene::create(std::move(spec));
   if (!scene) return 0;
   const auto bytes = write_scene(**scene);
@@ -108,9 +108,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   const DeformableObject& of = (*scene)->deformables[0];
   const auto known = std::make_unique<DevicePath>(device_scene(**scene).value()),
-             told = std::make_unique<DevicePath>(device_scene(**scene).value());
-  for (DevicePath* path : {known.get(), told.get()}) path->shift(0, 0);
-  DrivenShape knows(**scene, of, *known), learns(**scene, of, *told);
+             signalled = std::make_unique<DevicePath>(device_scene(**scene).value());
+  for (DevicePath* path : {known.get(), signalled.get()}) path->shift(0, 0);
+  DrivenShape knows(**scene, of, *known), learns(**scene, of, *signalled);
   std::vector<Vec3i> a(of.rest.size()), b(of.rest.size());
   std::int64_t tick = 0;
   for (std::uint64_t number = 1; in.ok() && number < 200; ++number) {
@@ -118,9 +118,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const RigidState state = device(**scene, tick, of.rest[in.u8() % of.rest.size()], in);
     const bool acts = in.u8() % 8 != 0;
     if (acts) known->add(number, state);
-    told->add(number, state);
+    signalled->add(number, state);
     (void)learns.body_at(tick, b);
-    told->settle(number, [&](std::uint64_t n) { return n != number || acts; });
+    signalled->settle(number, [&](std::uint64_t n) { return n != number || acts; });
     const bool there = knows.body_at(tick, a);
     require(learns.body_at(tick, b) == there);
     require(!there || a == b);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Sections of a stream file, for whoever damages streams on purpose: with its check value mended, damage reaches the code behind it.
+/// Sections of a stream file, for whoever damages streams on purpose: with its check value repaired, damage reaches the code behind it.
 #pragma once
 
 #include <cstddef>
@@ -36,14 +36,14 @@ inline std::vector<Section> sections_of(std::span<const std::uint8_t> file) {
 }
 
 /// Makes the check value of every section right.
-inline void mend(std::span<std::uint8_t> file) {
+inline void repair(std::span<std::uint8_t> file) {
   for (const Section& section : sections_of(file)) {
     const std::uint32_t crc = crc32(file.subspan(section.begin, section.end - section.begin));
     for (std::size_t i = 0; i < kCheckBytes; ++i) file[section.end + i] = static_cast<std::uint8_t>(crc >> (8 * i));
   }
 }
 
-/// The file with another payload in one section, whose length then says so. Its check value is wrong until mend().
+/// The file with another payload in one section, whose length then says so. Its check value is wrong until repair().
 inline std::vector<std::uint8_t> with_payload(std::span<const std::uint8_t> file, const Section& section,
                                               std::span<const std::uint8_t> payload) {
   const bool is_header = section.begin == 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A server, a client and a stranger, who all keep to the rules of a session unless they are told otherwise.
+/// A server, a client and a stranger, who all keep to the rules of a session unless a test asks otherwise.
 #pragma once
 
 #include <algorithm>

@@ -33,6 +33,6 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   } else {
     size = LLVMFuzzerMutate(data, size, max_size);
   }
-  mend({data, size});
+  repair({data, size});
   return size;
 }

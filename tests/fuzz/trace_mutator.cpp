@@ -18,7 +18,7 @@ void put(Bytes field, std::uint32_t value) {
   for (std::size_t i = 0; i < field.size(); ++i) field[i] = static_cast<std::uint8_t>(value >> (8 * i));
 }
 
-void mend_chunk(Bytes content) {
+void repair_chunk(Bytes content) {
   ByteReader in(content);
   in.bytes(3 * sizeof(std::uint64_t));  // times, size
   const std::size_t crc = in.position();
@@ -28,11 +28,11 @@ void mend_chunk(Bytes content) {
   if (in.ok()) put(content.subspan(crc, 4), packed ? 0 : crc32(records));
 }
 
-void mend_attachment(Bytes content) {
+void repair_attachment(Bytes content) {
   if (content.size() >= 4) put(content.last(4), crc32(content.first(content.size() - 4)));
 }
 
-void mend_file(Bytes file) {
+void repair_file(Bytes file) {
   std::size_t at = mcap::kMagic.size(), section = 0;  // where the bytes begin that the next CRC of a whole section covers
   while (at < file.size()) {
     ByteReader in(file.subspan(at));
@@ -40,8 +40,8 @@ void mend_file(Bytes file) {
     const auto size = static_cast<std::size_t>(in.bytes(in.u64()).size());
     if (!in.ok()) return;
     const Bytes content = file.subspan(at + mcap::kRecordPrefix, size);
-    if (opcode == Opcode::chunk) mend_chunk(content);
-    if (opcode == Opcode::attachment) mend_attachment(content);
+    if (opcode == Opcode::chunk) repair_chunk(content);
+    if (opcode == Opcode::attachment) repair_attachment(content);
     if (opcode == Opcode::data_end && size == 4) put(content, crc32(file.subspan(section, at - section)));
     at += in.position();
     if (opcode == Opcode::data_end) section = at;
@@ -54,6 +54,6 @@ void mend_file(Bytes file) {
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned) {
   size = LLVMFuzzerMutate(data, size, max_size);
-  mend_file({data, size});
+  repair_file({data, size});
   return size;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// An elastic body under a device that presses, slides and leaves: what both ends work out.
+/// An elastic body under a device that presses, slides and leaves: what both ends compute.
 #include <array>
 #include <cinttypes>
 #include <cstdio>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Seeded damage to files, and check values that are mended behind it, so that the damage reaches the code behind the check."""
+"""Seeded damage to files, and check values that are repaired behind it, so that the damage reaches the code behind the check."""
 import struct
 import subprocess
 import zlib
@@ -118,7 +118,7 @@ def stream_pieces(data):
 
 
 def mutated_stream(data, rng):
-    """Damage within one header or payload, with lengths and check values mended."""
+    """Damage within one header or payload, with lengths and check values repaired."""
     pieces = stream_pieces(data)
     i = rng.randrange(len(pieces))
     if i == 0:
@@ -188,7 +188,7 @@ def unpacked_mcap(data):
 
 
 def mutated_mcap(parts, rng):
-    """Damage within one record, with lengths and check values mended, some chunks compressed anew."""
+    """Damage within one record, with lengths and check values repaired, some chunks compressed anew."""
     parts = [(op, list(content) if op == CHUNK else content) for op, content in parts]
     target = rng.choice([p[1] for p in parts if p[0] == CHUNK and p[1]] + [parts])
     i = rng.randrange(len(target))

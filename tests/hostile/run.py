@@ -73,8 +73,8 @@ class Runner:
         power = POWER_IN_JSON if "--json" in words else POWER
         yield from bad_text("standard output", done.stdout, power, None)
         yield from bad_text("standard error", done.stderr, power, LONGEST_MESSAGE)
-        told = [line for line in done.stderr.splitlines() if not line.startswith((b"note:", b"warning:"))]
-        if done.returncode == 1 and not (told and told[0].startswith((b"error:", b"{") if "--json" in words else b"error:")):
+        lines = [line for line in done.stderr.splitlines() if not line.startswith((b"note:", b"warning:"))]
+        if done.returncode == 1 and not (lines and lines[0].startswith((b"error:", b"{") if "--json" in words else b"error:")):
             yield "no error: on standard error"
         left = {str(p.relative_to(folder)) for p in folder.rglob("*") if p.name not in before}
         wanted = {words[i + 1] for i, word in enumerate(words[:-1]) if word == "-o" and words[i + 1] != "/dev/null"}

@@ -143,7 +143,7 @@ for (const { time, value } of drawn.slice(1)) {
 }
 assert.ok(coloured > 100, `${coloured} shapes with more than one colour`);
 
-// A stream, decoded, at another rate; the trace tells no shape.
+// A stream, decoded, at another rate; the trace holds no shape.
 tactus("encode", "rigid.mcap", "-o", "rigid.tct", "-f", "-q");
 tactus("export", "foxglove", "rigid.tct", "--rate", "10", "-o", "stream-3d.mcap", "-f", "-q");
 const stream = await recording("stream-3d.mcap");

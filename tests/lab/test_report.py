@@ -56,12 +56,12 @@ class Reports(unittest.TestCase):
         self.assertEqual([wrong for _, _, wrong in counts if wrong], [])
         self.assertGreater(sum(agree for agree, _, _ in counts), 350)
 
-    def test_the_list_tells_numbers_of_results(self):
-        told = {row["value"] for row in cells.Tables(ROOT / "reports").rows("results.csv")}
+    def test_the_list_has_numbers_of_results(self):
+        listed = {row["value"] for row in cells.Tables(ROOT / "reports").rows("results.csv")}
         rows = [line.split("|") for line in (ROOT / "reports/README.md").read_text(encoding="utf8").splitlines() if line.startswith("|")]
         numbers_of = [row[2].split()[0] for row in rows if re.match(r" [\d.]", row[2])]
         self.assertGreater(len(numbers_of), 50)
-        self.assertEqual([number for number in numbers_of if number not in told], [])
+        self.assertEqual([number for number in numbers_of if number not in listed], [])
 
     def test_every_table_and_figure_has_its_command(self):
         files = {target for one in report.made().values() for target in one["files"]}
@@ -108,7 +108,7 @@ class CompactFigures(unittest.TestCase):
         self.assertEqual(self.points(figure.compact_path("M 1,2 L 3,4 5,6.5 Z")), [(1, 2), (3, 4), (5, 6.5)])
         self.assertEqual(figure.compact_path("M 0 0 A 1 1 0 0 1 2 2"), "M 0 0 A 1 1 0 0 1 2 2")
 
-    def test_names_and_styles_are_told_once(self):
+    def test_names_and_styles_are_stated_once(self):
         style = 'style="fill: #0072b2"'
         made = figure.compact('<style>*{}</style><path id="mark" d="M 0 0 \nL 1 1 \n"/>\n  <g id="axes_1">\n' + f'   <use xlink:href="#mark" x="1.23456" {style}/>\n' * 3)
         self.assertEqual(made.count("fill: #0072b2"), 1)

@@ -61,7 +61,7 @@ class Arithmetic(unittest.TestCase):
         self.assertEqual(limits.gamma_density(start, shape, scale, start), 0)
 
     def test_jumps_of_a_force(self):
-        ticks = {"force_felt_N": [0, 1, 1, -2, -2], "update": [None, "haptic", None, "visual", "haptic"]}
+        ticks = {"force_rendered_N": [0, 1, 1, -2, -2], "update": [None, "haptic", None, "visual", "haptic"]}
         self.assertEqual(signals.jumps(ticks), {"updates": 3, "median_jump_N": 1, "largest_jump_N": 3})
 
     def test_fraction_felt_counts_contact_only(self):

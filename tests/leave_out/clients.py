@@ -15,7 +15,7 @@ import callgrind
 
 TICKS = 100
 ROWS = [  # what else is asked for, clients, instructions that one more object may take in a tick
-    ({"tells_moved": True}, 16, 0.1),
+    ({"names_moved": True}, 16, 0.1),
     ({}, 16, 80),
     ({}, 64, 80),
 ]

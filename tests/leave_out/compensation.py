@@ -13,7 +13,7 @@ import sys
 import callgrind
 
 KINDS = {
-    "loads": r"tactus::(LoadEncoder|LoadDecoder)::|tactus::sim::.*tell_loads",
+    "loads": r"tactus::(LoadEncoder|LoadDecoder)::|tactus::sim::.*store_loads",
     "stiffness": r"tactus::StiffnessReduction::|tactus::sim::Compensation::",
     "simulation": r"tactus::sim::(Prediction|PastShapes)::",
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Every conformance vector, damaged in every small way: an error with a rule or a decodable stream, nothing else. Check values are
-/// also mended after the damage, so that it reaches the code behind them.
+/// also repaired after the damage, so that it reaches the code behind them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -100,8 +100,8 @@ const char* survive(std::span<const std::uint8_t> bytes) {
   }
 }
 
-Bytes mended(Bytes file) {
-  testing::mend(file);
+Bytes repaired(Bytes file) {
+  testing::repair(file);
   return file;
 }
 
@@ -144,7 +144,7 @@ TEST_P(EveryVector, EveryBitFlipped) {
       Bytes damaged = file;
       damaged[at] = static_cast<std::uint8_t>(damaged[at] ^ 1u << bit);
       if (const char* wrong = survive(damaged)) return wrong;
-      if (const char* wrong = survive(mended(damaged))) return wrong;
+      if (const char* wrong = survive(repaired(damaged))) return wrong;
     }
     return nullptr;
   });
@@ -155,7 +155,7 @@ TEST_P(EveryVector, EveryByteZeroOrOnes) {
     for (const std::uint8_t value : {std::uint8_t{0x00}, std::uint8_t{0xff}}) {
       Bytes damaged = file;
       damaged[at] = value;
-      if (const char* wrong = survive(mended(damaged))) return wrong;
+      if (const char* wrong = survive(repaired(damaged))) return wrong;
     }
     return nullptr;
   });

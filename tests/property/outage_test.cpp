@@ -45,7 +45,7 @@ Sent sent_by(Sender& sender, std::int64_t tick, const Truth& truth, std::size_t 
   return {Bytes(packet.bytes.begin(), packet.bytes.end()), packet.key, sender.state_hash(substream)};
 }
 
-/// A packet per tick of an object on a path that `seed` tells.
+/// A packet per tick of an object on a path by `seed`.
 std::vector<Sent> send(std::size_t count, double seed, std::uint16_t first_sequence = 1) {
   SenderOptions options;
   options.triggers.reduction = Reduction::none;

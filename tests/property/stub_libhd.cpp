@@ -149,7 +149,7 @@ void hdGetDoublev(Parameter parameter, double* out) {
     case Parameter::max_force:
       *out = 3.3;
       return;
-    case Parameter::position:  // the tick is told to a hundredth of a millimetre
+    case Parameter::position:  // the tick is given to a hundredth of a millimetre
       expect(in_frame);
       out[0] = spoils ? nan : 0.01 * static_cast<double>(tick % 10'000);
       out[1] = 20;

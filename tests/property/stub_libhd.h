@@ -17,7 +17,7 @@ struct StubState {
 using StubReset = void (*)();
 /// The call of this function with this number, counted from 1, ends with an error.   in  function  "hdBeginFrame"
 using StubFail = void (*)(const char* function, std::uint64_t number);
-/// What the next frames tell: a transform or a position that is none.
+/// What the next frames return: a transform or a position that is none.
 using StubSpoil = void (*)(bool spoils);
 /// The thread does not call for so long.
 using StubPause = void (*)(std::int64_t nanoseconds);

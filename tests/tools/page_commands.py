@@ -240,7 +240,7 @@ def self_test():
              ("```\necho a\n```\n```text\nb\n```\n", ["the page shows"]), ("<!-- not run: it is too long -->\n```\nfalse\n```\n", []),
              ("<!-- needs no-such-thing -->\n```\nfalse\n```\n", []), ("<!-- file a.toml -->\n```toml\nx = 1\n```\n```\ncat a.toml\n```\n```text\nx = 1\n```\n", []),
              ("<!-- example nothing.cpp -->\n```cpp\nx\n```\n", ["not lines"])]
-    told = [("```\ntrue\n```\n```text\n```\n", "shows nothing"), ("```rust\n```\n", "nobody runs"), ("```text\na\n```\n", "none that runs"), ("[a](gone.md)\n", "leads nowhere"),
+    wrong_pages = [("```\ntrue\n```\n```text\n```\n", "shows nothing"), ("```rust\n```\n", "nobody runs"), ("```text\na\n```\n", "none that runs"), ("[a](gone.md)\n", "leads nowhere"),
             ("# A b\n[a](#a-b)\n[c](#c)\n", "no such heading"), ("<!-- not run: so -->\n```\n```\n", "without a reason")]
     with tempfile.TemporaryDirectory() as scratch:
         (pathlib.Path(scratch) / "tactus").symlink_to("/bin/false")
@@ -251,10 +251,10 @@ def self_test():
             page.write_text(text, encoding="utf8")
             found = run(page)[2]
             failed += len(found) != len(wanted) or any(word not in one for word, one in zip(wanted, found))
-        for text, wanted in told:
+        for text, wanted in wrong_pages:
             page.write_text(text, encoding="utf8")
             failed += not any(wanted in one for one in findings(page, "page.md"))
-    print(f"self-test: {len(cases) + len(told) + 13} cases, {failed} wrong")
+    print(f"self-test: {len(cases) + len(wrong_pages) + 13} cases, {failed} wrong")
     return failed
 
 

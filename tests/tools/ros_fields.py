@@ -49,4 +49,4 @@ def result(program, changed):
 if __name__ == "__main__":
     plain = result(sys.argv[1], {})
     same = [field for field, value in FIELDS.items() if result(sys.argv[1], {field: value}) == plain]
-    print(f"{len(FIELDS) - len(same)} of {len(FIELDS)} fields matter or are told to be ignored", *same)
+    print(f"{len(FIELDS) - len(same)} of {len(FIELDS)} fields matter or are reported as ignored", *same)

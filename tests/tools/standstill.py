@@ -66,7 +66,7 @@ name = "hold"
 to = [-0.010, 0.0, 0.02]
 duration = 599
 """
-STALE, OLDEST, SLACK = 400, 1000, 200  # [ms] until all force is gone after the last news; no force is felt of an older picture; of this machine
+STALE, OLDEST, SLACK = 400, 1000, 200  # [ms] until all force is gone after the last news; no force is rendered of an older picture; of this machine
 NONE = 0.02                            # [N]
 WHOLE = 0.8                            # of the force before
 
@@ -154,7 +154,7 @@ class Trial:
         else:
             self.link = Program("link", "--listen", "0", "--to", port, "--link", "delay=20ms")
             self.port = self.link.wait(lambda line: re.search(r":(\d+)\b", line))[1]
-        self.hand = self.join("felt.mcap")
+        self.hand = self.join("client.mcap")
         self.seat = self.server.wait(event("seated"))
         time.sleep(2.5)
         self.begin = time.monotonic()
@@ -198,9 +198,9 @@ class Trial:
             self.link.end()
         seats = [e for e in map(event("seated"), self.server.lines) if e]
         assert {(e["client"], e["user"]) for e in seats} == {(self.seat["client"], "hand")}, seats
-        felt = rows_of("again.mcap" if self.kind == "killed" else "felt.mcap", "force")
-        self.zero = felt[-1][0] - round(1000 * (end - self.begin))  # the tick at which it happened, about
-        return felt, rows_of("served.mcap", "server_force")
+        rendered = rows_of("again.mcap" if self.kind == "killed" else "client.mcap", "force")
+        self.zero = rendered[-1][0] - round(1000 * (end - self.begin))  # the tick at which it happened, about
+        return rendered, rows_of("served.mcap", "server_force")
 
 
 def rows_of(trace, force):
@@ -216,31 +216,31 @@ def longest(rows):
     return max(((a[0], b[0]) for a, b in zip(rows, rows[1:])), key=lambda pair: pair[1] - pair[0])
 
 
-def check(trial, felt, served):
+def check(trial, rendered, served):
     """The force at the hand, by what the trace says."""
-    pressed = [force for tick, force, _ in felt if trial.zero - 1000 < tick < trial.zero - 200]
-    whole = sorted(pressed)[len(pressed) // 2] if pressed else sorted(force for _, force, _ in felt)[len(felt) // 2]
+    pressed = [force for tick, force, _ in rendered if trial.zero - 1000 < tick < trial.zero - 200]
+    whole = sorted(pressed)[len(pressed) // 2] if pressed else sorted(force for _, force, _ in rendered)[len(rendered) // 2]
     assert whole > 1, (trial.kind, whole)
-    for tick, force, age in felt:
+    for tick, force, age in rendered:
         assert force < NONE or age <= OLDEST + SLACK, f"at tick {tick} {force} N of a picture {age} ms old"
     if trial.kind == "restarted":  # the trace ends there: the new server has a time of its own
-        assert max(force for _, force, _ in felt[-300:]) < NONE, felt[-1]
+        assert max(force for _, force, _ in rendered[-300:]) < NONE, rendered[-1]
         before = [force for _, force, _ in served[-1000:-300]]  # the hand leaves first
         assert min(before) > WHOLE * whole, (whole, min(before))
         return "force at the new server's hand again"
     begin, end = trial.zero, trial.zero + round(1000 * trial.seconds)
     if trial.kind == "client":
-        begin, end = longest(felt)
+        begin, end = longest(rendered)
         assert end - begin >= 900 * trial.seconds, (begin, end)
         if trial.seconds > 2:  # the server's own hand of that end lifts off within a second
             silent = [force for tick, force, _ in served if begin + 1000 + SLACK < tick < end - SLACK]
             assert silent and max(silent) < NONE, (len(silent), max(silent, default=0))
     elif trial.kind == "server" and trial.seconds > 0.5:
-        felt_yet = [force for tick, force, _ in felt if begin + STALE + SLACK < tick < end - SLACK]
-        assert felt_yet and max(felt_yet) < NONE, (len(felt_yet), max(felt_yet, default=0))
-    again = [force for _, force, _ in felt[-300:]]  # 3 s after it was over
+        still_rendered = [force for tick, force, _ in rendered if begin + STALE + SLACK < tick < end - SLACK]
+        assert still_rendered and max(still_rendered) < NONE, (len(still_rendered), max(still_rendered, default=0))
+    again = [force for _, force, _ in rendered[-300:]]  # 3 s after it was over
     assert min(again) > WHOLE * whole, (whole, min(again))
-    without = [tick for tick, force, _ in felt if tick >= begin and force < NONE]
+    without = [tick for tick, force, _ in rendered if tick >= begin and force < NONE]
     return f"without force for {without[-1] - without[0]} ms" if without else "never without force"
 
 
@@ -283,13 +283,13 @@ def main():
             for seconds in map(float, options.seconds.split(",")) if kind in ("server", "client") else [0.0]:
                 trial = Trial(kind, seconds)
                 trial.happen()
-                felt, served = trial.end()
-                found = check(trial, felt, served)
+                rendered, served = trial.end()
+                found = check(trial, rendered, served)
                 name = f"{kind} stopped for {seconds:g} s" if seconds else \
                     {"address": "another address", "sealed": "another address, sealed", "killed": "client killed, and back", "restarted": "server killed, and anew"}[kind]
                 print(f"{name}: {found}")
                 if kind != "restarted":
-                    results[name] = [(t - trial.zero, f, a) for t, f, a in felt if -1000 <= t - trial.zero <= 1000 * seconds + 4000]
+                    results[name] = [(t - trial.zero, f, a) for t, f, a in rendered if -1000 <= t - trial.zero <= 1000 * seconds + 4000]
         if output:
             output.mkdir(parents=True, exist_ok=True)
             rows = [[name, t, f, a] for name, of in results.items() for t, f, a in of if t % 20 == 0]

@@ -24,12 +24,12 @@ def main(args: list[str]) -> int:
     tun_link, tactus = args
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
-        path = {name: shlex.quote(str(work / name)) for name in ("server.json", "client.json", "client.done", "felt.mcap")}
+        path = {name: shlex.quote(str(work / name)) for name in ("server.json", "client.json", "client.done", "client.mcap")}
         program = shlex.quote(tactus)
         # The server stays two seconds longer, and hears all that arrives.
         server = (f"{program} serve rotate-push-lift -p 4% --listen 127.0.0.1:7447 --duration 100s -q --json > {path['server.json']} & "
                   f"server=$!; until [ -e {path['client.done']} ]; do sleep 0.1; done; sleep 2; kill -TERM $server; wait $server")
-        client = (f"{program} join 127.0.0.1:7447 --scene rotate-push-lift -o {path['felt.mcap']} --duration 5s --json "
+        client = (f"{program} join 127.0.0.1:7447 --scene rotate-push-lift -o {path['client.mcap']} --duration 5s --json "
                   f"> {path['client.json']}; status=$?; touch {path['client.done']}; exit $status")
         done = subprocess.run([tun_link, network("up", 3), network("down", 4), server, client], capture_output=True, text=True, check=False,
                               timeout=120)

@@ -181,7 +181,7 @@ class FalconUmockdev : public testing::Testbed {
 
 Time soon() { return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count() + kAnswerTime; }
 
-TEST_F(FalconUmockdev, AFalconIsFoundMovedFeltAndLost) {
+TEST_F(FalconUmockdev, AFalconIsFoundMovedRenderedToAndLost) {
   plug_falcon();
   const FalconBackend backend;
   const Backend::Listing found = backend.list();

@@ -43,12 +43,12 @@ class HidUmockdev : public testing::Testbed {
   bool answer_ioctl(UMockdevIoctlClient* client, gulong request, UMockdevIoctlData* argument) override {
     const int size = static_cast<int>(descriptor_.size());
     if (request != HIDIOCGRDESCSIZE && request != HIDIOCGRDESC) return false;
-    UMockdevIoctlData* told = umockdev_ioctl_data_resolve(
+    UMockdevIoctlData* reported = umockdev_ioctl_data_resolve(
         argument, 0, request == HIDIOCGRDESC ? sizeof(hidraw_report_descriptor) : sizeof(int), nullptr);
-    std::copy_n(reinterpret_cast<const std::uint8_t*>(&size), sizeof size, told->data);
-    if (request == HIDIOCGRDESC) std::copy(descriptor_.begin(), descriptor_.end(), told->data + sizeof size);
+    std::copy_n(reinterpret_cast<const std::uint8_t*>(&size), sizeof size, reported->data);
+    if (request == HIDIOCGRDESC) std::copy(descriptor_.begin(), descriptor_.end(), reported->data + sizeof size);
     umockdev_ioctl_client_complete(client, 0, 0);
-    umockdev_ioctl_data_unref(told);
+    umockdev_ioctl_data_unref(reported);
     return true;
   }
   bool answer_read(UMockdevIoctlClient* client, UMockdevIoctlData* buffer) override {

@@ -246,13 +246,13 @@ TEST(Result, AdviceFollowsFromClassAndRule) {
 
 TEST(Diagnostic, IsPlaceRuleFaultAndRemedy) {
   const Error error{Errc::invalid, "R-SRF-11", 0};
-  const std::string told =
+  const std::string expected =
       "R-SRF-11: an edge belongs to a third triangle; remove the surplus element or take the mesh apart there";
-  EXPECT_EQ(to_string(Diagnostic{error}), told);
+  EXPECT_EQ(to_string(Diagnostic{error}), expected);
   EXPECT_EQ(place_of(Diagnostic{error}), "");
   const Diagnostic full{
       .error = error, .file = "m.obj", .line = 3, .step = 0, .kind = "triangle", .element = 17, .detail = "'x'"};
-  EXPECT_EQ(to_string(full), "m.obj:3: step 0: triangle 17: 'x': " + told);
+  EXPECT_EQ(to_string(full), "m.obj:3: step 0: triangle 17: 'x': " + expected);
   EXPECT_EQ(place_of(full), "line 3, step 0, triangle 17, 'x'");
 }
 

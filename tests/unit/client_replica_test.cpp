@@ -353,7 +353,7 @@ TEST(Timelines, OrderOfArrivalDoesNotMatter) {
   }
 }
 
-/// One moves in every tick, 99 are told of once: what is older than the time kept goes, but the last before it.
+/// One moves in every tick, 99 are updated once: what is older than the time kept goes, but the last before it.
 TEST(Timelines, KeepATimeOfWhatMovesAndOneStateOfWhatRests) {
   Timelines timelines(100);
   timelines.reset(*testing::scene_of(100));

@@ -147,7 +147,7 @@ TEST_F(Pushing, WithoutDelayOrAtRestNothingIsReduced) {
   EXPECT_EQ(reduction_.reduced(moving(0.007), 50), kStiffness);
 }
 
-TEST_F(Pushing, WhatOthersPushAwayIsNotFelt) {
+TEST_F(Pushing, WhatOthersPushAwayIsNotRendered) {
   go(1e-4, 300);
   EXPECT_EQ(reduction_.reduced(moving(0.004, -1), 50), 0);
   Rigid flat = moving(0.004, 0);

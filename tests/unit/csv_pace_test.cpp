@@ -70,9 +70,9 @@ TEST(CsvPace, LimitsOfGroupsAndRates) {
     const Imported outcome = import(moving(400, 10 / seconds, time), mapping);
     ASSERT_EQ(outcome.rule, "") << seconds;
     const std::vector<std::string> notes = notes_of(outcome);
-    const bool told =
+    const bool reported =
         std::ranges::any_of(notes, [](const std::string& note) { return note.find("come in groups") != note.npos; });
-    EXPECT_EQ(told, seconds < 0.5) << seconds;
+    EXPECT_EQ(reported, seconds < 0.5) << seconds;
   }
   for (const double rate : {48'000.0, 52'000.0}) {
     const Imported outcome = import(moving(400, rate, [=](int i) { return i / rate; }), timed());
@@ -113,7 +113,7 @@ TEST(CsvPace, CopiesAndTruePausesAreNoBursts) {
   EXPECT_EQ(paused.frames[10].tick, 100);
 }
 
-/// Of a mouse or a touch screen, which tell when something happened.
+/// Of a mouse or a touch screen, which report when something happened.
 TEST(CsvPace, EventsAreNoBursts) {
   std::ostringstream text;
   text << "t,x,y,z\n";

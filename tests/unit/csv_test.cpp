@@ -137,12 +137,12 @@ TEST(Csv, ExportReadsBackToTheSameBits) {
 }
 
 TEST(Csv, AForceThatTheTraceDoesNotKnowHasNoColumns) {
-  for (const KnownForces known : {KnownForces::felt, KnownForces::server}) {
+  for (const KnownForces known : {KnownForces::rendered, KnownForces::server}) {
     Recording recording = make_recording(3);
     recording.info.users[0].forces = known;
     for (TraceFrame& frame : recording.frames) {
       UserSample& user = frame.users[0];
-      if (known == KnownForces::felt) user.server_force = {};
+      if (known == KnownForces::rendered) user.server_force = {};
       else user.force = user.server_force;
     }
     const TempFile trace;
@@ -153,7 +153,7 @@ TEST(Csv, AForceThatTheTraceDoesNotKnowHasNoColumns) {
     const std::string names = text.str().substr(0, text.str().find('\n'));
     for (const char axis : {'x', 'y', 'z'}) {
       const auto has = [&](const char* column) { return names.find(std::string(column) + axis) != std::string::npos; };
-      EXPECT_EQ(has("/users/left/force_"), known == KnownForces::felt);
+      EXPECT_EQ(has("/users/left/force_"), known == KnownForces::rendered);
       EXPECT_EQ(has("/users/left/server_force_"), known == KnownForces::server);
       EXPECT_TRUE(has("/users/right/force_") && has("/users/right/server_force_"));
     }
@@ -436,10 +436,10 @@ TEST(Csv, TimesLoseNothing) {
   EXPECT_EQ(date_text(1'000'000'000'000'000'000), "2001-09-09 01:46:40 UTC");
 }
 
-TEST(Csv, NamesTellUnitsAndAxes) {
+TEST(Csv, NamesStateUnitsAndAxes) {
   const auto scale = [](std::string_view name, CsvDimension dimension) {
-    const auto told = unit_in_name(name, dimension);
-    return told.unit ? told.unit->scale : 0;
+    const auto stated = unit_in_name(name, dimension);
+    return stated.unit ? stated.unit->scale : 0;
   };
   for (const char* name : {"t_ms", "time_ms", "t [ms]", "t (ms)", "timeMs", "ms", "t / ms"})
     EXPECT_EQ(scale(name, CsvDimension::time), 1e-3) << name;

@@ -45,28 +45,28 @@ TEST_P(LayeredBounds, HoldAfterEachPacket) {
   const SharedScene scene = layered_scene(mesh, modes);
   SheetEnds ends(scene, options(1, true, thresholds));
   DentedSheet sheet(mesh, kSquares, noise);
-  BoundWatch felt(*scene, thresholds), seen(*scene, thresholds);
+  BoundWatch rendered(*scene, thresholds), seen(*scene, thresholds);
   for (std::int64_t k = 0; k < kFrames; ++k) {
     const SheetFrame frame = sheet.frame(k);
     const auto packets = ends.encode(k, frame);
     ASSERT_TRUE(packets);
     ASSERT_LE(packets->size(), 2U);
     if (packets->size() == 2) {
-      EXPECT_EQ(packets->front().layer, Layer::haptic) << "what is felt goes first";
+      EXPECT_EQ(packets->front().layer, Layer::haptic) << "what is rendered goes first";
       EXPECT_EQ(packets->back().layer, Layer::visual);
       EXPECT_FALSE(packets->back().key);
     }
-    const bool none_felt = packets->empty() || packets->front().layer == Layer::visual;
-    if (none_felt) felt.look_at_area(frame, ends.shown(k));
+    const bool none_rendered = packets->empty() || packets->front().layer == Layer::visual;
+    if (none_rendered) rendered.look_at_area(frame, ends.shown(k));
     for (const Packet& packet : *packets) {
       ends.deliver(packet, k);
-      if (packet.layer == Layer::haptic) felt.look_at_area(frame, ends.shown(k));
+      if (packet.layer == Layer::haptic) rendered.look_at_area(frame, ends.shown(k));
     }
     ends.agree(k);
     if (HasFatalFailure()) return;
     seen.look(frame, ends.shown(k));
   }
-  EXPECT_EQ(felt.broken(), 0U);
+  EXPECT_EQ(rendered.broken(), 0U);
   EXPECT_EQ(seen.broken(), 0U);
   EXPECT_EQ(ends.layers[0] > 0, thresholds.weber_fraction.has_value());
   EXPECT_GT(ends.layers[1], 20U);
@@ -92,14 +92,14 @@ TEST(DeformableLayers, MotionIsPredictedAcrossHapticPackets) {
   EXPECT_LT(bytes[1], 2 * bytes[0]);
 }
 
-/// A sender that drops visual packets: what is felt stays within its bound, what is seen again as soon as one arrives.
+/// A sender that drops visual packets: what is rendered stays within its bound, what is seen again as soon as one arrives.
 TEST(DeformableLayers, VisualPacketsMayBeDropped) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   for (const std::uint8_t span : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{4}}) {
     const SharedScene scene = layered_scene(mesh, 6, span);
     SheetEnds ends(scene, options(0));
     DentedSheet sheet(mesh, kSquares);
-    BoundWatch felt(*scene, {}), seen(*scene, {});
+    BoundWatch rendered(*scene, {}), seen(*scene, {});
     std::size_t lost = 0, keys = 0;
     for (std::int64_t k = 0; k < kFrames; ++k) {
       const SheetFrame frame = sheet.frame(k);
@@ -113,11 +113,11 @@ TEST(DeformableLayers, VisualPacketsMayBeDropped) {
       ends.agree(k);
       if (HasFatalFailure()) return;
       lost += dropped ? 1U : 0U;
-      felt.look_at_area(frame, ends.shown(k));
+      rendered.look_at_area(frame, ends.shown(k));
       if (!dropped) seen.look(frame, ends.shown(k));
     }
     EXPECT_GT(lost, 20U);
-    EXPECT_EQ(felt.broken(), 0U);
+    EXPECT_EQ(rendered.broken(), 0U);
     EXPECT_EQ(seen.broken(), 0U);
     if (span > 1) {
       EXPECT_EQ(keys, 1U) << "the baseline before the lost packet is kept";
@@ -213,7 +213,7 @@ TEST(DeformableLayers, RequestedKeyPackets) {
         const auto lost = ends.encode(tick++, frame).value();
         ASSERT_FALSE(lost.empty());
         EXPECT_TRUE(lost[0].key);
-        EXPECT_EQ(lost[0].layer == Layer::haptic, layered && touched) << "what is felt goes first";
+        EXPECT_EQ(lost[0].layer == Layer::haptic, layered && touched) << "what is rendered goes first";
         if (lost.size() == 1) {
           ends.sender.forget_last(1);
         } else {
@@ -228,7 +228,7 @@ TEST(DeformableLayers, RequestedKeyPackets) {
   }
 }
 
-/// Losses of any packet, of key packets, and of both packets of a frame. Whoever makes them is told once per packet, at once; where
+/// Losses of any packet, of key packets, and of both packets of a frame. Whoever makes them is notified once per packet, at once; where
 /// that comes too late, because the visual packet of the frame builds on a lost haptic one, the receiver asks for a key packet.
 TEST(DeformableLayers, AnyPacketMayBeLost) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
@@ -303,7 +303,7 @@ TEST(DeformableLayers, BoundsHoldWithAcknowledgedBaselinesToo) {
   EXPECT_EQ(seen.broken(), 0U) << "worst " << seen.worst() << " m";
 }
 
-TEST(DeformableLayers, ThesisListsWhatIsFeltInAPacketOfItsOwn) {
+TEST(DeformableLayers, ThesisListsWhatIsRenderedInAPacketOfItsOwn) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   SceneSpec spec = testing::sheet_spec(mesh, DeformableProfile::thesis);
   spec.deformables[0].quant_bits = 12;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A clock that a test moves, and a device that does as it is told.
+/// A clock that a test moves, and a device that does what a test asks.
 #pragma once
 
 #include <atomic>

@@ -267,7 +267,7 @@ TEST(SharedLibrary, FindsFunctionsAndNamesTheFirstThatIsMissing) {
   EXPECT_STREQ(library->missing(), "no_such_function");
 }
 
-TEST(SharedLibrary, TellsWhyItCannotBeLoaded) {
+TEST(SharedLibrary, ReportsWhyItCannotBeLoaded) {
   const auto library = SharedLibrary::load("libno-such-library.so.0");
   ASSERT_FALSE(library);
   EXPECT_NE(library.error().find("libno-such-library.so.0"), std::string::npos) << library.error();

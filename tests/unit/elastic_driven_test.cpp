@@ -175,19 +175,19 @@ TEST(DrivenShape, ChangesFromFrameToFrame) {
 /// Whatever is learnt of the past, the shapes are those of who knew it at once.
 TEST(DrivenShape, MakesAnewWhatHadAnotherPast) {
   const SharedScene scene = elastic_scene();
-  const auto known = std::make_shared<DevicePath>(device_scene(*scene).value()), told = std::make_shared<DevicePath>(*known);
-  for (const auto& path : {known, told}) path->shift(0, 0);
-  DrivenShape knows(*scene, scene->deformables[0], *known), learns(*scene, scene->deformables[0], *told);
+  const auto known = std::make_shared<DevicePath>(device_scene(*scene).value()), signalled = std::make_shared<DevicePath>(*known);
+  for (const auto& path : {known, signalled}) path->shift(0, 0);
+  DrivenShape knows(*scene, scene->deformables[0], *known), learns(*scene, scene->deformables[0], *signalled);
   int differed = 0;
   for (std::uint64_t number = 1; number <= 120; ++number) {
     const auto tick = static_cast<std::int64_t>(5 * number);
     const bool acts = number % 7 != 0;
     if (acts) known->add(number, device_at(*scene, tick, pressing(tick)));
-    told->add(number, device_at(*scene, tick, pressing(tick)));
+    signalled->add(number, device_at(*scene, tick, pressing(tick)));
     if (number < 20) continue;
     differed += body_at(learns, *scene, tick) != body_at(knows, *scene, tick) ? 1 : 0;
     if (number % 5 != 0) continue;
-    told->settle(number, [](std::uint64_t n) { return n % 7 != 0; });
+    signalled->settle(number, [](std::uint64_t n) { return n % 7 != 0; });
     ASSERT_EQ(body_at(learns, *scene, tick), body_at(knows, *scene, tick)) << "tick " << tick;
   }
   EXPECT_GT(differed, 3);

@@ -137,7 +137,7 @@ TEST_F(FalconDevice, NoForceOnceHomingIsLost) {
   EXPECT_TRUE(falcon_.is_at_rest());
 }
 
-TEST_F(FalconDevice, TheLightTellsItsState) {
+TEST_F(FalconDevice, TheLightReportsItsState) {
   falcon_.reply.homed = 0;
   static_cast<void>(read_fresh());
   EXPECT_EQ(falcon_.light(), 8u);
@@ -341,24 +341,24 @@ TEST(FalconBackend, SaysWhyADeviceIsNotOpened) {
   auto bus = std::make_unique<FakeBus>(falcon);
   FakeBus& usb = *bus;
   const FalconBackend backend(std::move(bus));
-  const auto told = [&](const char* which) { return to_string(backend.open(which, {}).error()); };
+  const auto reported = [&](const char* which) { return to_string(backend.open(which, {}).error()); };
   for (const char* which : {"1", "x", "-1", "0x", "99999999999999999999999"})
-    EXPECT_EQ(told(which).find("falcon:" + std::string(which) + ": R-DEV-1"), 0u) << told(which);
+    EXPECT_EQ(reported(which).find("falcon:" + std::string(which) + ": R-DEV-1"), 0u) << reported(which);
   usb.refusal = UsbStatus::denied;
-  EXPECT_NE(told("").find("R-DEV-2"), std::string::npos);
+  EXPECT_NE(reported("").find("R-DEV-2"), std::string::npos);
   EXPECT_NE(
-      told("").find(R"(70-falcon.rules, then unplug the Falcon and plug it in again: SUBSYSTEM=="usb", ATTR{idVendor}=="0403")"),
+      reported("").find(R"(70-falcon.rules, then unplug the Falcon and plug it in again: SUBSYSTEM=="usb", ATTR{idVendor}=="0403")"),
       std::string::npos)
-      << told("");
-  EXPECT_NE(told("").find(R"(TAG+="uaccess")"), std::string::npos);
+      << reported("");
+  EXPECT_NE(reported("").find(R"(TAG+="uaccess")"), std::string::npos);
   usb.refusal = UsbStatus::busy;
-  EXPECT_NE(told("").find("R-DEV-2"), std::string::npos);
-  EXPECT_NE(told("").find("end the program that has the Falcon"), std::string::npos);
+  EXPECT_NE(reported("").find("R-DEV-2"), std::string::npos);
+  EXPECT_NE(reported("").find("end the program that has the Falcon"), std::string::npos);
   usb.refusal = UsbStatus::failed;
-  EXPECT_NE(told("").find("R-DEV-4"), std::string::npos);
+  EXPECT_NE(reported("").find("R-DEV-4"), std::string::npos);
   usb.refusal = UsbStatus::done;
   falcon.runs = false;
-  EXPECT_NE(told("").find("R-DEV-3"), std::string::npos);
+  EXPECT_NE(reported("").find("R-DEV-3"), std::string::npos);
   EXPECT_EQ(falcon.ports, 0);
 }
 

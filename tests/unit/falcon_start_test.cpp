@@ -14,7 +14,7 @@ namespace {
 using testing::FakeFalcon;
 using testing::FakePort;
 
-std::string told(const tl::expected<void, Diagnostic>& result) { return result ? "fine" : to_string(result.error()); }
+std::string reported(const tl::expected<void, Diagnostic>& result) { return result ? "fine" : to_string(result.error()); }
 
 /// A file of so many bytes, gone at the end.
 class File {
@@ -46,7 +46,7 @@ class FalconStart : public ::testing::Test {
 };
 
 TEST_F(FalconStart, AFalconThatRunsNeedsNoFirmware) {
-  EXPECT_EQ(told(start(port_, "")), "fine");
+  EXPECT_EQ(reported(start(port_, "")), "fine");
   EXPECT_TRUE(falcon_.firmware.empty());
   EXPECT_EQ(falcon_.settings, (std::vector<std::pair<std::uint8_t, std::uint16_t>>{{9, 1}, {3, 2}, {0, 1}, {0, 2}}));
   EXPECT_EQ(falcon_.frames.size(), 1u);
@@ -55,7 +55,7 @@ TEST_F(FalconStart, AFalconThatRunsNeedsNoFirmware) {
 
 TEST_F(FalconStart, OneThatWasSwitchedOnTakesIt) {
   falcon_.runs = false;
-  EXPECT_EQ(told(start(port_, file_.path())), "fine");
+  EXPECT_EQ(reported(start(port_, file_.path())), "fine");
   EXPECT_EQ(falcon_.firmware, file_.bytes());
   const std::vector<std::pair<std::uint8_t, std::uint16_t>> greeting{
       {0, 1}, {0, 2}, {9, 16}, {3, 0x4138}, {4, 8}, {2, 0}, {1, 0x200}, {1, 0x100}, {1, 0x101}, {1, 0x100}, {3, 0x15}};
@@ -63,12 +63,12 @@ TEST_F(FalconStart, OneThatWasSwitchedOnTakesIt) {
   EXPECT_TRUE(std::equal(greeting.begin(), greeting.end(), falcon_.settings.begin() + 4));
 }
 
-TEST_F(FalconStart, WithoutFirmwareTheUserIsToldWhatToName) {
+TEST_F(FalconStart, WithoutFirmwareTheErrorSaysWhatToName) {
   falcon_.runs = false;
-  EXPECT_EQ(told(start(port_, "")),
+  EXPECT_EQ(reported(start(port_, "")),
             "the Falcon was switched on and has no firmware yet: R-DEV-3: what the device needs on this machine is not "
             "there; name the firmware file that came with the vendor's driver, and switch the Falcon off and on");
-  EXPECT_EQ(told(start(port_, "/nowhere/firmware.bin")).find("/nowhere/firmware.bin: the firmware cannot be read: No such file"),
+  EXPECT_EQ(reported(start(port_, "/nowhere/firmware.bin")).find("/nowhere/firmware.bin: the firmware cannot be read: No such file"),
             0u);
   for (const std::size_t size : {std::size_t{0}, kMostFirmware + 1}) {
     const File other(size);
@@ -153,7 +153,7 @@ TEST_F(FalconStart, SomethingElseBehindTheChipIsNoFalcon) {
 TEST_F(FalconStart, AnswersMayComeByteByByte) {
   falcon_.runs = false;
   falcon_.most_bytes = 1;
-  EXPECT_EQ(told(start(port_, file_.path())), "fine");
+  EXPECT_EQ(reported(start(port_, file_.path())), "fine");
   EXPECT_EQ(falcon_.firmware, file_.bytes());
 }
 

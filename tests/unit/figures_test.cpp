@@ -15,10 +15,10 @@ namespace {
 using Names = std::vector<std::string>;
 
 /// Names of the lines of a user's forces.
-Names lines_of(KnownForces known, const Vec3& felt, const Vec3& server) {
+Names lines_of(KnownForces known, const Vec3& rendered, const Vec3& server) {
   MotionFigure figure({.objects = {}, .users = {{.name = "hand", .forces = known}}, .source = {}, .scene = {}});
   TraceFrame frame{.objects = {}, .users = {{}}};
-  frame.users[0].force = felt;
+  frame.users[0].force = rendered;
   frame.users[0].server_force = server;
   figure.add(frame);
   Names out;
@@ -31,8 +31,8 @@ Names lines_of(KnownForces known, const Vec3& felt, const Vec3& server) {
 TEST(MotionFigure, NamesAForceAfterWhoseItIs) {
   const Vec3 some{0, 0, 1}, none;
   EXPECT_EQ(lines_of(KnownForces::both, some, some), Names{"force"});
-  EXPECT_EQ(lines_of(KnownForces::both, some, none), (Names{"felt", "of the server"}));
-  EXPECT_EQ(lines_of(KnownForces::felt, some, none), Names{"felt"});
+  EXPECT_EQ(lines_of(KnownForces::both, some, none), (Names{"rendered", "of the server"}));
+  EXPECT_EQ(lines_of(KnownForces::rendered, some, none), Names{"rendered"});
   EXPECT_EQ(lines_of(KnownForces::server, some, some), Names{"of the server"});
 }
 

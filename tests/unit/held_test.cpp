@@ -126,13 +126,13 @@ TEST(Held, OneBadObjectDoesNotStopTheOthers) {
   }
 }
 
-/// It slowed down, and what is accelerated is told with velocities ahead of it: against its motion. To be held is to stop, which looks like more
-/// of the same. What is held rests: all that is told of it from then on does.
+/// It slowed down, and what is accelerated is sent with velocities ahead of it: against its motion. To be held is to stop, which looks like more
+/// of the same. What is held rests: all that is sent of it from then on does.
 TEST(Held, RestsThoughItWasAccelerated) {
   const SharedScene scene = SceneBuilder(1000).rigid("rises").build().value();
   auto sender = Sender::create(scene, {.triggers = {.visual_position = 1e-3, .haptic = HapticRule::off}}).value();
   auto receiver = Receiver::create(scene).value();
-  std::size_t told = 0;
+  std::size_t sent = 0;
   for (std::int64_t tick = 0; tick < 400; ++tick) {
     const double t = 1e-3 * static_cast<double>(tick);
     RigidSample sample{{{9 * t - 10 * t * t, 0, 0}, {}}, {9 - 20 * t, 0, 0}, {}};
@@ -140,11 +140,11 @@ TEST(Held, RestsThoughItWasAccelerated) {
     for (const Packet& packet : all(sender.encode(tick, {.objects = {&sample, 1}}))) {
       ASSERT_TRUE(receiver.push(packet.bytes));
       if (tick < 200) continue;
-      ++told;
+      ++sent;
       EXPECT_EQ(receiver.object(0).velocity, Vec3i{}) << tick;
     }
   }
-  EXPECT_GT(told, 0u);
+  EXPECT_GT(sent, 0u);
 }
 
 TEST(Held, FromTheFirstTickOnWhereTheSceneDeclaresIt) {
@@ -167,7 +167,7 @@ TEST(Held, FromTheFirstTickOnWhereTheSceneDeclaresIt) {
   }
 }
 
-/// A contact or touch that is none does not count; what is felt at the others keeps its bound.
+/// A contact or touch that is none does not count; what is rendered at the others keeps its bound.
 TEST(Held, ABadContactDoesNotCount) {
   const SharedScene scene = testing::scene_of(2);
   const RigidTriggers triggers{.weber_fraction = 0.05};
@@ -196,7 +196,7 @@ TEST(Held, ABadContactDoesNotCount) {
       }
       const auto packets = all(sender.encode(tick, {samples, contacts}));
       ASSERT_EQ(bytes_of(packets), bytes_of(all(spared.encode(tick, {samples, {&good, 1}})))) << tick;
-      ASSERT_EQ(sender.held().size(), 16u) << "no more are told";
+      ASSERT_EQ(sender.held().size(), 16u) << "no more are reported";
       for (const HeldPart& held : sender.held()) EXPECT_TRUE(held.part == TruthPart::contact && held.index >= 1);
       EXPECT_EQ(sender.held()[0].since, 0);
       EXPECT_TRUE(spared.held().empty());
@@ -208,7 +208,7 @@ TEST(Held, ABadContactDoesNotCount) {
 }
 
 /// What touches an object that is held is not known; nobody is harmed by it. Where it was last is not what is shown, but within the bounds:
-/// whoever felt it there would be told.
+/// whoever it were rendered to would receive it.
 TEST(Held, AContactOfAHeldObjectDoesNotCount) {
   const SharedScene scene = testing::scene_of(1);
   auto sender = Sender::create(scene, {.triggers = {.visual_position = 3e-3}}).value();

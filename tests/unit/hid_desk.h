@@ -29,7 +29,7 @@ using device::hid::RawRefusal;
 /// What the devices are; outlives the ports.
 struct FakeDesk {
   std::vector<RawListing> listings;
-  Bytes told;  // by the open device
+  Bytes reported;  // by the open device
   std::optional<RawRefusal> refusal;
   std::deque<Bytes> reports;
   bool is_gone = false;
@@ -39,7 +39,7 @@ struct FakeDesk {
 class FakePort final : public RawPort {
  public:
   explicit FakePort(FakeDesk& desk) : desk_(&desk) {}
-  const Bytes& descriptor() const noexcept override { return desk_->told; }
+  const Bytes& descriptor() const noexcept override { return desk_->reported; }
   std::optional<std::size_t> read(std::span<std::uint8_t> report) noexcept override {
     if (desk_->is_gone) return std::nullopt;
     if (desk_->reports.empty()) return 0;
@@ -76,7 +76,7 @@ class OnDesk : public ::testing::Test {
  protected:
   std::unique_ptr<Device> opened(const Bytes& descriptor) {
     desk_.listings = {listing({0x05, 0x01}), listing(gamepad()), listing(descriptor)};
-    desk_.told = descriptor;
+    desk_.reported = descriptor;
     auto device = HidBackend(std::make_unique<FakeBus>(desk_)).open("", {});
     if (!device) ADD_FAILURE() << to_string(device.error());
     return *std::move(device);

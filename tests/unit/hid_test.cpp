@@ -143,16 +143,16 @@ TEST_F(HidDevice, ListsWhatItServesAndSaysWhatIsMissing) {
 TEST_F(HidDevice, SaysWhyItIsNotOpened) {
   desk_.listings = {listing(testing::newer_mouse())};
   const HidBackend backend(std::make_unique<testing::FakeBus>(desk_));
-  const auto told = [&](const char* which) { return to_string(backend.open(which, {}).error()); };
+  const auto reported = [&](const char* which) { return to_string(backend.open(which, {}).error()); };
   for (const char* which : {"1", "x", "-1", "0 ", "/dev/hidraw4", "/"})
-    EXPECT_EQ(told(which).find("hid:" + std::string(which) + ": R-DEV-1"), 0u) << told(which);
+    EXPECT_EQ(reported(which).find("hid:" + std::string(which) + ": R-DEV-1"), 0u) << reported(which);
   desk_.refusal = RawRefusal::denied;
-  EXPECT_NE(told("").find("hid:0: R-DEV-2"), std::string::npos);
-  EXPECT_NE(told("").find("TAG+=\"uaccess\""), std::string::npos);
+  EXPECT_NE(reported("").find("hid:0: R-DEV-2"), std::string::npos);
+  EXPECT_NE(reported("").find("TAG+=\"uaccess\""), std::string::npos);
   desk_.refusal = RawRefusal::gone;
-  EXPECT_NE(told("0").find("/dev/hidraw3 cannot be opened: R-DEV-4"), std::string::npos);
+  EXPECT_NE(reported("0").find("/dev/hidraw3 cannot be opened: R-DEV-4"), std::string::npos);
   desk_.refusal.reset();
-  EXPECT_NE(told("0").find("R-DEV-5"), std::string::npos);  // it tells no descriptor
+  EXPECT_NE(reported("0").find("R-DEV-5"), std::string::npos);  // it reports no descriptor
 }
 
 TEST(HidBackend, TheRealDevicesAreLookedAtWithoutHarm) {
@@ -169,7 +169,7 @@ class ReportDevice : public testing::OnDesk {
  protected:
   std::unique_ptr<Device> opened_by_path(const Bytes& descriptor) {
     desk_.listings = {listing(descriptor)};
-    desk_.told = descriptor;
+    desk_.reported = descriptor;
     return HidBackend(std::make_unique<testing::FakeBus>(desk_)).open("/dev/hidraw3", {}).value();
   }
 };
@@ -318,7 +318,7 @@ TEST(ReportDescriptor, ConstantsArraysAndOtherUsagesArePassedOver) {
   EXPECT_EQ(only({0x91, 0x02}, testing::kXyz), 0u);
   EXPECT_EQ(only({0xb1, 0x02}, testing::kXyz), 0u);
   EXPECT_EQ(only({0x81, 0x02}, {0x09, 0x38}), 0u);  // a wheel
-  EXPECT_EQ(only({0x81, 0x02}, {0x09, 0x30}), 1u);  // what the second one is, is not told
+  EXPECT_EQ(only({0x81, 0x02}, {0x09, 0x30}), 1u);  // what the second one is, is not stated
   EXPECT_EQ(only({0x81, 0x02}, {}), 0u);
 }
 

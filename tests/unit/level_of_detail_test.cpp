@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A client is told of objects by their distance: levels, their bounds, and what is left out.
+/// Objects are sent to a client by their distance: levels, their bounds, and what is left out.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -115,7 +115,7 @@ TEST(LevelsOfDetail, RiseWithTheDistanceAndStayWhereSomebodyStandsAtABorder) {
   EXPECT_EQ(at(0), 4) << "one that is no place does not";
 }
 
-TEST(LevelsOfDetail, WhatIsTouchedIsToldInFullWithinReach) {
+TEST(LevelsOfDetail, WhatIsTouchedIsSentInFullWithinReach) {
   const SharedScene scene = world(1);
   LevelsOfDetail levels(*scene);
   HeldList held(*scene);
@@ -166,10 +166,10 @@ TEST(LevelsOfDetail, WhatRestsIsLookedAtWhereThePlaceMoves) {
 
 struct Judged {
   std::uint64_t packets = 0, bytes = 0, updates = 0;
-  std::array<std::uint64_t, 8> told{};  // objects and ticks by level
+  std::array<std::uint64_t, 8> sent{};  // objects and ticks by level
 };
 
-/// The bounds of the level that is told hold in every tick, and the level is that of the distance.
+/// The bounds of the level that is signalled hold in every tick, and the level is that of the distance.
 Judged judge(Baseline baseline, bool is_smoothed, bool looks, std::uint64_t seed) {
   constexpr std::size_t kObjects = 140;
   const SharedScene scene = world(kObjects, is_smoothed);
@@ -191,7 +191,7 @@ Judged judge(Baseline baseline, bool is_smoothed, bool looks, std::uint64_t seed
     }
     for (std::uint32_t i = 0; i < kObjects; ++i) {
       const std::uint8_t lod = receiver.replica().lod(i, tick);
-      ++out.told[lod];
+      ++out.sent[lod];
       const double distance = norm(of.samples[i].pose.position - eyes);
       if (looks && tick > 200) {
         const double margin = 0.45;  // [m] that is walked while all is looked at, and a sixteenth of kFull
@@ -216,8 +216,8 @@ TEST(LevelsOfDetail, BoundsOfTheLevelHoldInEveryTick) {
   for (const Baseline baseline : {Baseline::previous, Baseline::acknowledged})
     for (const bool is_smoothed : {false, true}) {
       const Judged all = judge(baseline, is_smoothed, false, 5), near = judge(baseline, is_smoothed, true, 5);
-      EXPECT_EQ(all.told[0], 140u * 4000) << "who does not say from where it looks is told of all in full";
-      for (const std::size_t lod : {0u, 1u, 2u, 3u, 4u, 7u}) EXPECT_GT(near.told[lod], 1000u) << lod;
+      EXPECT_EQ(all.sent[0], 140u * 4000) << "who does not say from where it looks is sent all in full";
+      for (const std::size_t lod : {0u, 1u, 2u, 3u, 4u, 7u}) EXPECT_GT(near.sent[lod], 1000u) << lod;
       EXPECT_LT(2 * near.bytes, all.bytes);
     }
 }
@@ -291,8 +291,8 @@ struct Seen {
   std::uint64_t over = 0, shown = 0, bytes = 0;
 };
 
-/// in   told  from where a client looks is told
-Seen run(Role role, LossPolicy policy, double loss, bool told, std::uint64_t seed) {
+/// in   looks  it is signalled from where a client looks
+Seen run(Role role, LossPolicy policy, double loss, bool looks, std::uint64_t seed) {
   const SharedScene scene = world(140);
   SessionServerOptions options{.sender = options_of(Baseline::previous), .loss = policy, .widening = 1};
   testing::SessionWorld session(scene, options);
@@ -304,7 +304,7 @@ Seen run(Role role, LossPolicy policy, double loss, bool told, std::uint64_t see
   for (std::int64_t tick = 0; tick < 5000; ++tick) {
     of.step();
     past.push_back(of.samples);
-    if (told) end.client->look_from(of.eyes());
+    if (looks) end.client->look_from(of.eyes());
     EXPECT_TRUE(end.client->submit(session.now, {.position = of.eyes()}, std::nullopt));  // nothing, of an observer
     session.step([&](std::int64_t) { return of.truth(); });
     const std::int64_t s = end.client->shown_tick(session.now);
@@ -326,7 +326,7 @@ Seen run(Role role, LossPolicy policy, double loss, bool told, std::uint64_t see
   return out;
 }
 
-TEST(LevelsOfDetail, ASessionTellsWhatIsNearThePlaceThatTheClientTells) {
+TEST(LevelsOfDetail, ASessionSendsWhatIsNearThePlaceThatTheClientSignals) {
   for (const LossPolicy policy : {LossPolicy::repair, LossPolicy::prompt}) {
     const Seen all = run(Role::observer, policy, 0, false, 1), near = run(Role::observer, policy, 0, true, 1);
     EXPECT_EQ(all.over, 0u);

@@ -50,7 +50,7 @@ TEST(LiveReport, ProgressIsAFractionAndATime) {
   EXPECT_EQ(progress_text(3'000'000, 3'000'000, 5'000'000), "receiving the scene: 100 % of 3.0 MB, 0 s left");
 }
 
-TEST(LiveReport, AnAddressThatIsNoneIsToldWhatIsWrong) {
+TEST(LiveReport, AnAddressThatIsNoneGetsWhatIsWrong) {
   const auto why = [](const std::string& typed) { return session_address("SERVER", typed, "a.key").error().text; };
   EXPECT_EQ(why("no-such-host.invalid:7447"), "SERVER no-such-host.invalid:7447: no host of this name is known");
   EXPECT_EQ(why("::1:7447"), "SERVER ::1:7447: an IPv6 address stands in brackets");

@@ -17,7 +17,7 @@ using testing::expect_near;
 using testing::flat;
 using testing::Hand;
 
-/// Give the body another shape, which the hand is told of first.
+/// Give the body another shape, which the hand gets first.
 void deform(Body& body, Hand& hand, const std::vector<Vec3>& vertices) {
   double reach = 0;
   for (std::size_t v = 0; v < vertices.size(); ++v) reach = std::max(reach, norm(vertices[v] - body.mesh.vertices[v]));

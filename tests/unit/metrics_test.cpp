@@ -78,7 +78,7 @@ TEST(ErrorMetrics, MeasuresPoseAndContactForce) {
     fidelity.add(frame, std::array{moved(frame, by), Pose{{9, 9, 9}, {}}});
     ++frame.tick;
   };
-  add({0.007, 0, 0});    // beside the face's normal: seen, not felt
+  add({0.007, 0, 0});    // beside the face's normal: seen, without an effect on the force
   add({0, 0, 0.00007});  // 7 % of 1 N
   add({0, 0, -0.0001});  // 10 %
   add({0, 0, 0.0002});   // 20 %, over the curve's 14 % at 1 N
@@ -296,7 +296,7 @@ class Tolerance : public ::testing::Test {
   TraceFrame frame_;
 };
 
-TEST_F(Tolerance, CountsTheTicksInWhichARoundTripIsFelt) {
+TEST_F(Tolerance, CountsTheTicksInWhichARoundTripIsPerceptible) {
   DelayTolerance tolerance(info_, kWeber);
   push(tolerance, 1, 0.1, 12.6);                           // no velocity yet
   for (int i = 0; i < 9; ++i) push(tolerance, 1, 0.1, 0);  // no force
@@ -310,8 +310,8 @@ TEST_F(Tolerance, CountsTheTicksInWhichARoundTripIsFelt) {
   EXPECT_GE(touch.pressing(), 300u);
   EXPECT_LE(touch.pressing(), 309u);
   EXPECT_NEAR(*touch.quantile(0.5), 0.018, 2e-4);
-  EXPECT_EQ(touch.felt(0), 0);                    // 10 ms
-  EXPECT_NEAR(touch.felt(1), 300 / 421.0, 0.01);  // 25 ms
+  EXPECT_EQ(touch.perceptible(0), 0);                    // 10 ms
+  EXPECT_NEAR(touch.perceptible(1), 300 / 421.0, 0.01);  // 25 ms
 }
 
 TEST_F(Tolerance, APauseIsNoMotion) {

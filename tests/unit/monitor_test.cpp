@@ -99,7 +99,7 @@ TEST(PrometheusText, ANameOfASceneBreaksNoLine) {
   EXPECT_NE(text.find("scene=\"a\\\"b\\\\c\\nd??\"} 1\n"), std::string::npos) << text.substr(0, 200);
 }
 
-TEST(Health, TellsWhatIsWrong) {
+TEST(Health, ReportsWhatIsWrong) {
   ServerFigures figures = figures_of_two();
   figures.recent_ticks = 10'000;
   figures.recent_missed = 1000;
@@ -202,7 +202,7 @@ class Listener {
   std::string name_;
 };
 
-TEST(ServiceManager, IsToldThatTheServiceIsReadyLivesAndEnds) {
+TEST(ServiceManager, IsNotifiedThatTheServiceIsReadyLivesAndEnds) {
   Listener listener;
   ::setenv("WATCHDOG_USEC", "2000000", 1);
   ::setenv("WATCHDOG_PID", std::to_string(::getpid()).c_str(), 1);

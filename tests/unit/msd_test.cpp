@@ -44,7 +44,7 @@ TEST(MsdLoop, RestsWhereTheSpringsBalance) {
   for (int i = 0; i < 3000; ++i) loop.step(std::array{1e-3});
   const double surface = 1e-3 * 200 / 300;
   EXPECT_NEAR(loop.surface(), surface, 1e-12);
-  EXPECT_NEAR(loop.felt(0), -300 * (1e-3 - surface), 1e-9);
+  EXPECT_NEAR(loop.rendered_force(0), -300 * (1e-3 - surface), 1e-9);
 }
 
 TEST(MsdLoop, TheSurfaceMovesOncePerPeriodAndOnePeriodLate) {
@@ -88,7 +88,7 @@ TEST(MsdLoop, DelaysShiftTheirChannels) {
     const double seen = tick < 12 ? 0 : surfaces[static_cast<std::size_t>(tick - 12)];
     const double before = tick < 13 ? 0 : surfaces[static_cast<std::size_t>(tick - 13)];
     const double rate = tick == 0 ? 1 : (before - seen) / 1e-3;  // of the penetration
-    ASSERT_NEAR(delayed.felt(0), -(300 * (1e-3 - seen) + 2 * rate), 1e-12) << tick;
+    ASSERT_NEAR(delayed.rendered_force(0), -(300 * (1e-3 - seen) + 2 * rate), 1e-12) << tick;
   }
 }
 
@@ -98,10 +98,10 @@ TEST(MsdLoop, ALinearApproachEndsWithThePeriod) {
   options.users[0].client_damping = 0;
   MsdLoop loop(options);
   for (int tick = 0; tick < 10; ++tick) loop.step(std::array{1e-3});
-  const double felt = loop.felt(0);
+  const double rendered = loop.rendered_force(0);
   for (int tick = 1; tick <= 10; ++tick) {
     loop.step(std::array{1e-3});
-    EXPECT_NEAR(loop.felt(0), felt + 300 * loop.surface() * tick / 10, 1e-12) << tick;
+    EXPECT_NEAR(loop.rendered_force(0), rendered + 300 * loop.surface() * tick / 10, 1e-12) << tick;
   }
 }
 
@@ -111,7 +111,7 @@ TEST(MsdLoop, PressingNeverPulls) {
   MsdLoop loop(options);
   for (int tick = 0; tick < 500; ++tick) {
     loop.step(std::array{5e-3 * std::sin(0.05 * tick)});
-    ASSERT_LE(loop.felt(0), 0) << tick;
+    ASSERT_LE(loop.rendered_force(0), 0) << tick;
   }
 }
 
@@ -124,7 +124,7 @@ TEST(MsdLoop, AHandThatIsAwayChangesNothing) {
     alone.step(std::array{1e-3});
     accompanied.step(std::array{1e-3, kAway});
     ASSERT_EQ(accompanied.surface(), alone.surface());
-    ASSERT_EQ(accompanied.felt(1), 0);
+    ASSERT_EQ(accompanied.rendered_force(1), 0);
   }
 }
 

@@ -107,7 +107,7 @@ TEST(Pcap, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   EXPECT_TRUE(writer.add((1'000'000ULL << 32) - 1, kClient, kServer, Bytes(65507)));
 }
 
-TEST(Pcap, AFullDiskIsTold) {
+TEST(Pcap, AFullDiskIsReported) {
   std::ostringstream out;
   PcapWriter writer = PcapWriter::create(out).value();
   out.setstate(std::ios::badbit);

@@ -199,7 +199,7 @@ class OpenHaptics : public ::testing::Test {
   void* library_;
 };
 
-TEST_F(OpenHaptics, TellsWhatTheRuntimeTells) {
+TEST_F(OpenHaptics, ReportsWhatTheRuntimeReports) {
   open();
   const Capabilities& can = device->capabilities();
   EXPECT_EQ(can.name, "openhaptics");

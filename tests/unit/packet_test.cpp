@@ -174,7 +174,7 @@ TEST(Substream, OneAloneHasNoNumber) {
   }
 }
 
-TEST(Substream, OfSeveralEachIsTold) {
+TEST(Substream, OfSeveralEachIsReported) {
   const auto substream_of = [](const SharedScene& of, std::uint8_t byte) {
     const std::array<std::uint8_t, 2> packet{byte, 5};
     const auto split = split_substream(*of, packet);

@@ -111,7 +111,7 @@ TEST(PassivityController, DampingStaysBelowItsLimit) {
   EXPECT_NEAR(controller.port().energy(), -(3 + 98 * 2.5) * 1e-4, 2e-5);
 }
 
-TEST(PassivityController, ForgetsWhatItIsToldToForget) {
+TEST(PassivityController, ForgetsWhatItIsAskedToForget) {
   PassivityController capped({.tick = kTick, .max_stored = 1e-5});
   PassivityController reset({.tick = kTick, .reset_after = 0.1});
   const auto drive = [](PassivityController& controller, int from, int to, double force) {

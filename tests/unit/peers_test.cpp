@@ -217,7 +217,7 @@ TEST(Peers, FloodsChangeNoDatagramOfOthers) {
   constexpr std::uint64_t kSeconds = (kTicks - kQuiet) / 1000 + 1;  // and what was saved up
   EXPECT_LE(flooded.handled - quiet.handled, kSeconds * (net::kClientRate.datagrams + net::kHostRate.datagrams));
   EXPECT_GT(flooded.peers.limited(), 450'000u);
-  EXPECT_GT(flooded.peers.limited_of(flooded.clients[2].at.key()), 220'000u) << "who it was can be told";
+  EXPECT_GT(flooded.peers.limited_of(flooded.clients[2].at.key()), 220'000u) << "who it was is known";
   EXPECT_EQ(flooded.peers.limited_of(flooded.clients[0].at.key()), 0u);
 }
 

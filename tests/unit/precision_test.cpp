@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `tactus bench precision` measures is what it says: orders, the reference's own error, and stops that are told.
+// What `tactus bench precision` measures is what it says: orders, the reference's own error, and stops that are reported.
 #include "lab/study/precision.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST_F(Precision, AnotherMethodEndsWhereTheReferenceIs) {
   }
 }
 
-TEST_F(Precision, TheChosenMethodIsToldAndIsWhatChooseTakes) {
+TEST_F(Precision, TheChosenMethodIsReportedAndIsWhatChooseTakes) {
   const PrecisionMethod chosen = precision_methods(Extent::brief).front();
   ASSERT_TRUE(chosen.chosen);
   const PrecisionPoint fast = measure(scene_, chosen, 100, reference_, {.runs = 1});
@@ -77,7 +77,7 @@ TEST_F(Precision, ANonlinearObjectIsNotThatOfLinearElasticity) {
   EXPECT_NEAR(coarse.errors.displacement / fine.errors.displacement, 1, 0.05);
 }
 
-TEST_F(Precision, AStopIsToldAndHasNoErrors) {
+TEST_F(Precision, AStopIsReportedAndHasNoErrors) {
   const PrecisionPoint point = measure(brief("membrane-stiff"), {"velocity Verlet", {}}, 25, reference_, {.runs = 1});
   EXPECT_TRUE(std::isnan(point.errors.displacement));
   EXPECT_NE(point.remark.find("R-FEM-6"), std::string::npos) << point.remark;

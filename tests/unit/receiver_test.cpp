@@ -55,7 +55,7 @@ std::vector<std::int64_t> image(Receiver& receiver, std::int64_t now) {
   return out;
 }
 
-TEST(Receiver, TellsWhatItDecoded) {
+TEST(Receiver, ReportsWhatItDecoded) {
   const SharedScene scene = testing::scene_of_every_kind(kSquares);
   auto receiver = Receiver::create(scene).value();
   EXPECT_EQ(receiver.scene(), scene);
@@ -182,7 +182,7 @@ TEST(Receiver, AnotherSendersPacketsAreRefusedUpToItsKeyPacket) {
   EXPECT_EQ(receiver.tick(0), 9);
 }
 
-/// A clock tells that the receiver was away for long: what it holds is too old to be sure of.
+/// A clock shows that the receiver was away for long: what it holds is too old to be sure of.
 TEST(Receiver, AfterALongSilenceOnlyAKeyPacketIsTaken) {
   const SharedScene scene = testing::scene_of_every_kind(kSquares);
   const std::vector<Sent> sent = record(scene, 30, {.key_interval = 0.25});

@@ -195,7 +195,7 @@ TEST(Smoothing, OffsetShrinksInAStraightLine) {
     EXPECT_EQ(path.pose(predictor, 10 + t).position[0], 1600 - 100 * std::max<std::int64_t>(16 - t, 0)) << t;
 }
 
-TEST(Smoothing, KeepsTheSixteenthsThatAreTold) {
+TEST(Smoothing, KeepsTheSixteenthsThatAreSignalled) {
   const SharedScene scene = smoothed_scene();
   const RigidPredictor predictor(*scene);
   for (const auto& [retained, left] : {std::pair{0, 1600}, {1, 1500}, {2, 1200}, {3, 800}}) {

@@ -73,7 +73,7 @@ TEST(Acceleration, DepartureIsThatOfAFadingAcceleration) {
 constexpr double kStiffness = 1000;
 
 /// Of an object that a probe presses with these forces [N]; less than 0: it does not touch.
-double sinking(std::array<std::int64_t, 3> ticks, std::array<double, 3> forces) {
+double decay_rate(std::array<std::int64_t, 3> ticks, std::array<double, 3> forces) {
   const SharedScene scene = testing::scene_of(2);
   ForceTrend trend(*scene);
   const std::vector<RigidSample> samples(2);
@@ -82,23 +82,23 @@ double sinking(std::array<std::int64_t, 3> ticks, std::array<double, 3> forces) 
     if (forces[i] < 0) contact.kind = ContactKind::none;
     trend.read(ticks[i], samples, {&contact, 1});
   }
-  EXPECT_EQ(trend.sinking(0), 0) << "of another object";
-  return trend.sinking(1);
+  EXPECT_EQ(trend.relative_decay_rate(0), 0) << "of another object";
+  return trend.relative_decay_rate(1);
 }
 
 TEST(ForceTrend, IsWhatTheLastTwoTicksTook) {
-  EXPECT_NEAR(sinking({7, 8, 9}, {0.5, 0.46, 0.4}), 0.1 / 0.4 / 0.002, 1e-6);
-  EXPECT_NEAR(sinking({1, 5, 9}, {0.5, 0.5, 0.4}), 0.1 / 0.4 / 0.008, 1e-6) << "ticks between count";
-  EXPECT_NEAR(sinking({0, 5, 10}, {0.5, 0.5, 0.4}), 0.1 / 0.4 / 0.01, 1e-6) << "the longest that counts";
+  EXPECT_NEAR(decay_rate({7, 8, 9}, {0.5, 0.46, 0.4}), 0.1 / 0.4 / 0.002, 1e-6);
+  EXPECT_NEAR(decay_rate({1, 5, 9}, {0.5, 0.5, 0.4}), 0.1 / 0.4 / 0.008, 1e-6) << "ticks between count";
+  EXPECT_NEAR(decay_rate({0, 5, 10}, {0.5, 0.5, 0.4}), 0.1 / 0.4 / 0.01, 1e-6) << "the longest that counts";
 }
 
 TEST(ForceTrend, IsNothingWhereTheForceGrowsBeginsOrWasLongAgo) {
-  EXPECT_EQ(sinking({7, 8, 9}, {0.4, 0.6, 0.5}), 0);
-  EXPECT_EQ(sinking({7, 8, 9}, {-1, 0.5, 0.4}), 0);
-  EXPECT_EQ(sinking({7, 8, 9}, {0.5, 0.4, -1}), 0);
-  EXPECT_EQ(sinking({7, 8, 9}, {0.5, 0.4, 0}), 0) << "nothing is left to sink";
-  EXPECT_EQ(sinking({0, 5, 11}, {0.5, 0.45, 0.4}), 0);
-  EXPECT_EQ(ForceTrend(*testing::scene_of(1)).sinking(0), 0);
+  EXPECT_EQ(decay_rate({7, 8, 9}, {0.4, 0.6, 0.5}), 0);
+  EXPECT_EQ(decay_rate({7, 8, 9}, {-1, 0.5, 0.4}), 0);
+  EXPECT_EQ(decay_rate({7, 8, 9}, {0.5, 0.4, -1}), 0);
+  EXPECT_EQ(decay_rate({7, 8, 9}, {0.5, 0.4, 0}), 0) << "nothing is left to decay";
+  EXPECT_EQ(decay_rate({0, 5, 11}, {0.5, 0.45, 0.4}), 0);
+  EXPECT_EQ(ForceTrend(*testing::scene_of(1)).relative_decay_rate(0), 0);
 }
 
 TEST(ForceTrend, TheLeastOfTheForcesCounts) {
@@ -111,7 +111,7 @@ TEST(ForceTrend, TheLeastOfTheForcesCounts) {
                               testing::touch(0, {}, (0.3 - lost) / kStiffness, kStiffness)};
     trend.read(tick, {&sample, 1}, contacts);
   }
-  EXPECT_NEAR(trend.sinking(0), 0.04 / 0.26 / 0.002, 1e-6);
+  EXPECT_NEAR(trend.relative_decay_rate(0), 0.04 / 0.26 / 0.002, 1e-6);
 }
 
 // ==== look-ahead velocity ====
@@ -134,7 +134,7 @@ Acceleration after_three_ticks(const Scene& scene, double acceleration) {
   return out;
 }
 
-/// What is told of the only object more than its velocities.
+/// What is sent of the only object more than its velocities.
 Acceleration::Motion lead_of(const Acceleration& acceleration, const RigidSample& now, std::span<const Contact> contacts,
                              const RigidTriggers& triggers) {
   return look_ahead_velocity(acceleration.of(0), ErrorRatio(0, now.pose, contacts, triggers));
@@ -165,7 +165,7 @@ int packets(const SharedScene& scene, std::int64_t ticks, const Samples& sample_
   return out;
 }
 
-/// The velocity that is told leads to an error of 0.6 of the bound on the one side, if the acceleration fades as is taken.
+/// The velocity that is sent leads to an error of 0.6 of the bound on the one side, if the acceleration fades as is taken.
 TEST(LookAheadVelocity, LeadsToTheFractionOfTheBoundThatIsTaken) {
   constexpr double kTau = 0.03, kMargin = 0.6;
   const RigidTriggers triggers{.visual_position = 6e-3, .haptic = HapticRule::off};
@@ -241,14 +241,14 @@ TEST(LookAheadVelocity, FixedThresholdsOfWhatIsTouchedCount) {
   EXPECT_LT(lead(1e-4), 0.7 * lead(5e-3));
 }
 
-TEST(LookAheadVelocity, MotionWithoutAccelerationIsToldAsWithoutIt) {
+TEST(LookAheadVelocity, MotionWithoutAccelerationIsSentAsWithoutIt) {
   const auto steady = [](std::int64_t tick) {
     RigidSample out = falling(0, tick);
     out.velocity = {0.3, 0, 0};
     out.pose.position.x = 0.3 * kTick * static_cast<double>(tick);
     return out;
   };
-  const auto told = [&](const SharedScene& scene) {
+  const auto sent = [&](const SharedScene& scene) {
     auto sender = Sender::create(scene, without_heartbeat()).value();
     auto receiver = Receiver::create(scene).value();
     std::vector<std::array<std::int32_t, 3>> out;
@@ -261,9 +261,9 @@ TEST(LookAheadVelocity, MotionWithoutAccelerationIsToldAsWithoutIt) {
     }
     return out;
   };
-  const auto plain = told(scene_of(1));
+  const auto plain = sent(scene_of(1));
   ASSERT_FALSE(plain.empty());
-  EXPECT_EQ(told(smoothed_scene()), plain);
+  EXPECT_EQ(sent(smoothed_scene()), plain);
 }
 
 /// A call that is refused leaves no acceleration behind.
@@ -285,21 +285,21 @@ TEST(LookAheadVelocity, RefusedTruthIsForgotten) {
 const RigidTriggers kTriggers{.visual_position = 0.001, .visual_rotation = 0.05};
 const ErrorRatio kRatio(0, {}, {}, kTriggers);
 
-UpdateCourse course(double offset, double drift, double acceleration) {
+ErrorTrajectory trajectory(double offset, double drift, double acceleration) {
   return {{{offset, 0, 0}, {}}, {}, {{drift, 0, 0}, {}}, {{acceleration, 0, 0}, {}}};
 }
 
 TEST(SmoothingChoice, TakesSixteenMillisecondsWhereTheNewPathIsRight) {
-  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, 0), kRatio, 1000), 4);
-  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, 0), kRatio, 8000), 7) << "the longest there is";
-  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, 0), kRatio, 148), 1);
-  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, 0), kRatio, 60), 0) << "two ticks are longer than that";
-  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, 0), kRatio, 1), 0);
+  EXPECT_EQ(longest_smoothing_exp(trajectory(-0.001, 0, 0), kRatio, 1000), 4);
+  EXPECT_EQ(longest_smoothing_exp(trajectory(-0.001, 0, 0), kRatio, 8000), 7) << "the longest there is";
+  EXPECT_EQ(longest_smoothing_exp(trajectory(-0.001, 0, 0), kRatio, 148), 1);
+  EXPECT_EQ(longest_smoothing_exp(trajectory(-0.001, 0, 0), kRatio, 60), 0) << "two ticks are longer than that";
+  EXPECT_EQ(longest_smoothing_exp(trajectory(-0.001, 0, 0), kRatio, 1), 0);
 }
 
 /// The error that grows and the offset that shrinks are on the same side, or on different ones.
 TEST(SmoothingChoice, IsShorterWhereTheErrorGrowsOnTheSideOfTheOffset) {
-  const auto smoothing_exp = [](double drift) { return longest_smoothing_exp(course(-0.001, drift, 0), kRatio, 1000); };
+  const auto smoothing_exp = [](double drift) { return longest_smoothing_exp(trajectory(-0.001, drift, 0), kRatio, 1000); };
   EXPECT_EQ(smoothing_exp(0.03), 4);
   int before = 4;
   for (const double drift : {-0.02, -0.05, -0.1, -0.2, -0.5}) {
@@ -307,16 +307,16 @@ TEST(SmoothingChoice, IsShorterWhereTheErrorGrowsOnTheSideOfTheOffset) {
     before = smoothing_exp(drift);
   }
   EXPECT_EQ(before, 0);
-  EXPECT_LT(longest_smoothing_exp(course(-0.001, 0, 10), kRatio, 1000), 4) << "the truth runs away from where it is shown";
-  EXPECT_EQ(longest_smoothing_exp(course(-0.001, 0, -5), kRatio, 1000), 4);
+  EXPECT_LT(longest_smoothing_exp(trajectory(-0.001, 0, 10), kRatio, 1000), 4) << "the truth runs away from where it is shown";
+  EXPECT_EQ(longest_smoothing_exp(trajectory(-0.001, 0, -5), kRatio, 1000), 4);
 }
 
 /// An offset that the force permits now is gone before the force is.
-TEST(SmoothingChoice, IsShorterWhereTheForceSinks) {
+TEST(SmoothingChoice, IsShorterWhereTheForceDecays) {
   const Contact contact{ContactKind::surface, 0, {}, {1, 0, 0}, {-0.001, 0, 0}, 1000};
-  const auto smoothing_exp = [&](double sinking) {
-    const ErrorRatio ratio(0, {}, {&contact, 1}, {.weber_fraction = 0.04}, sinking);
-    return longest_smoothing_exp(course(-0.000036, 0, 0), ratio, 1000);
+  const auto smoothing_exp = [&](double rate_of_decay) {
+    const ErrorRatio ratio(0, {}, {&contact, 1}, {.weber_fraction = 0.04}, rate_of_decay);
+    return longest_smoothing_exp(trajectory(-0.000036, 0, 0), ratio, 1000);
   };
   EXPECT_EQ(smoothing_exp(0), 4);
   EXPECT_EQ(smoothing_exp(20), 4) << "a third in 16 ms";
@@ -326,7 +326,7 @@ TEST(SmoothingChoice, IsShorterWhereTheForceSinks) {
 }
 
 TEST(SmoothingChoice, RotationCountsAsWell) {
-  const UpdateCourse turned{{{}, {0, 0.05, 0}}, {}, {{}, {0, 40, 0}}, {}};
+  const ErrorTrajectory turned{{{}, {0, 0.05, 0}}, {}, {{}, {0, 40, 0}}, {}};
   EXPECT_LT(longest_smoothing_exp(turned, kRatio, 1000), 2);
   const auto smoothing_exp = [](double acceleration) {
     return longest_smoothing_exp({{{}, {0, -0.02, 0}}, {{}, {0, -0.02, 0}}, {}, {{}, {0, acceleration, 0}}}, kRatio, 1000);
@@ -337,8 +337,8 @@ TEST(SmoothingChoice, RotationCountsAsWell) {
 
 /// The error leaves its bounds in the first quarter of 16 ms and is back before the half.
 TEST(SmoothingChoice, LooksAtTheFirstQuarter) {
-  EXPECT_LT(longest_smoothing_exp(course(0.001, 0.08, 16), kRatio, 1000), 4);
-  EXPECT_EQ(longest_smoothing_exp(course(0.001, 0.07, 16), kRatio, 1000), 4);
+  EXPECT_LT(longest_smoothing_exp(trajectory(0.001, 0.08, 16), kRatio, 1000), 4);
+  EXPECT_EQ(longest_smoothing_exp(trajectory(0.001, 0.07, 16), kRatio, 1000), 4);
 }
 
 // ==== error ratio ====
@@ -386,8 +386,8 @@ TEST(ErrorRatio, TheNarrowestBoundCounts) {
   EXPECT_LT(ErrorRatio(0, {}, contacts, {.visual_position = 6e-3, .haptic = HapticRule::off})({0, 0, 0.0005}, {}), 0.1);
 }
 
-/// What is permitted at a force that sinks by a tenth per 10 ms, down to what is permitted at the floor; what is seen stays.
-TEST(ErrorRatio, AForceThatSinksLeavesLessLater) {
+/// What is permitted at a force that decays by a tenth per 10 ms, down to what is permitted at the floor; what is seen stays.
+TEST(ErrorRatio, AForceThatDecaysLeavesLessLater) {
   const Contact contact{ContactKind::surface, 0, {}, {0, 0, 1}, {0, 0, -0.001}, 1000};
   const RigidTriggers triggers{.visual_position = 0.01, .weber_fraction = 0.1, .force_floor = 0.2};
   const ErrorRatio ratio(0, {}, {&contact, 1}, triggers, 10);

@@ -161,7 +161,7 @@ TEST(RigidMotion, HeavyLiesOnLight) {
 }
 
 /// What cannot be solved is counted from the first tick on.
-TEST(RigidMotion, WhatTheSolverCannotDoIsTold) {
+TEST(RigidMotion, WhatTheSolverCannotDoIsReported) {
   Scene scene = cube_scene();
   for (int i = 1; i < 8; ++i) {
     scene.objects.push_back(scene.objects[0]);
@@ -200,7 +200,7 @@ TEST_P(Bullet, StopsAtAWall) {
 INSTANTIATE_TEST_SUITE_P(Speeds, Bullet, ::testing::Values(2.0, 8.0, 20.0, 100.0));
 
 /// What half the step shows: faults of a simulation are larger than what it changes in a right one.
-TEST(RigidMotion, AFinerStepTellsFaultsApart) {
+TEST(RigidMotion, AFinerStepDistinguishesFaults) {
   const auto end = [](const RigidEffort& effort, double force, double mass, int lost_every) {
     Scene scene = cube_scene();
     scene.objects[0].mass = mass;

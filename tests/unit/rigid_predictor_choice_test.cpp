@@ -204,21 +204,21 @@ struct Pushing {
   RigidSample cube{{{}, {}}, {0.1, 0, 0}, {}};
   Contact contact{ContactKind::surface, 0, {-0.02, 0, 0}, {-1, 0, 0}, {}, kPush};
   std::int64_t tick = 0;
-  DrivenContact told;
+  DrivenContact signalled;
 
   explicit Pushing(double braked) : drag(braked) { path->shift(0, 0); }
 
   DrivenContact step() {
     path->add(static_cast<std::uint64_t>(tick) + 1, testing::device_state(*scene, tick, device));
     contact.device = device;
-    choice.read(tick, {&cube, 1}, {&contact, contact.kind == ContactKind::none ? 0u : 1u}, {&told, 1});
+    choice.read(tick, {&cube, 1}, {&contact, contact.kind == ContactKind::none ? 0u : 1u}, {&signalled, 1});
     const double depth = std::max(0.0, device.x - (cube.pose.position.x - 0.02));
     const double speed = cube.velocity.x + kTick * (kPush / kMass * depth - drag);
     cube.pose.position.x += kTick * speed;
     cube.velocity.x = (1 - testing::kLoss) * speed;
     device.x += 1e-4;
     ++tick;
-    return told;
+    return signalled;
   }
 };
 
@@ -227,22 +227,22 @@ TEST(DrivenChoice, TheDragExplainsTheMotion) {
   const double rounding = kPush / kMass * (std::ldexp(164.0, -DrivenContact::kPoint) - 0.02);
   for (const double drag : {0.0, 2.0, 6.9}) {
     Pushing pushing(drag);
-    DrivenContact told;
+    DrivenContact signalled;
     for (int i = 0; i < 20; ++i) {
-      told = pushing.step();
+      signalled = pushing.step();
       if (i < 4) {
-        EXPECT_EQ(told, DrivenContact{}) << "too little was seen";
+        EXPECT_EQ(signalled, DrivenContact{}) << "too little was seen";
       }
     }
-    EXPECT_NEAR(std::ldexp(told.drag, -DrivenContact::kDrag), drag + rounding, 0.04);
-    EXPECT_EQ(told.point, (Vec3i{-164, 0, 0}));
-    EXPECT_EQ(told.normal, (Vec3i{-1024, 0, 0}));
-    EXPECT_FALSE(told.is_held);
+    EXPECT_NEAR(std::ldexp(signalled.drag, -DrivenContact::kDrag), drag + rounding, 0.04);
+    EXPECT_EQ(signalled.point, (Vec3i{-164, 0, 0}));
+    EXPECT_EQ(signalled.normal, (Vec3i{-1024, 0, 0}));
+    EXPECT_FALSE(signalled.is_held);
   }
 }
 
 /// What is remembered of an object is its own.
-TEST(DrivenChoice, ObjectsThatTheDeviceMovesInTurnsAreToldAlike) {
+TEST(DrivenChoice, ObjectsThatTheDeviceMovesInTurnsAreSignalledAlike) {
   constexpr std::size_t kCubes = 3;
   SceneBuilder builder;
   for (std::size_t i = 0; i < kCubes; ++i) builder.rigid("cube" + std::to_string(i), {}).driven(testing::cube_physics());
@@ -250,7 +250,7 @@ TEST(DrivenChoice, ObjectsThatTheDeviceMovesInTurnsAreToldAlike) {
   DevicePath path(device_scene(*scene).value());
   path.shift(0, 0);
   DrivenChoice choice(*scene, path);
-  std::vector<DrivenContact> told(kCubes);
+  std::vector<DrivenContact> signalled(kCubes);
   std::vector<RigidSample> cubes(kCubes);
   for (std::int64_t tick = 0; tick < 60; ++tick) {
     const auto pushed = static_cast<std::uint32_t>(tick / 20);
@@ -259,28 +259,28 @@ TEST(DrivenChoice, ObjectsThatTheDeviceMovesInTurnsAreToldAlike) {
     // Pushed at a constant speed: the drag is what the spring pulls.
     for (RigidSample& cube : cubes) cube = {{device + Vec3{0.0185, 0, 0}, {}}, {0.1, 0, 0}, {}};
     const Contact contact{ContactKind::surface, pushed, {-0.02, 0, 0}, {-1, 0, 0}, device, kPush};
-    choice.read(tick, cubes, {&contact, 1}, told);
+    choice.read(tick, cubes, {&contact, 1}, signalled);
     for (std::uint32_t i = 0; i < kCubes; ++i) {
-      EXPECT_EQ(told[i] == DrivenContact{}, i != pushed || tick % 20 < 4) << tick << ' ' << i;
+      EXPECT_EQ(signalled[i] == DrivenContact{}, i != pushed || tick % 20 < 4) << tick << ' ' << i;
     }
     if (tick % 20 == 19) {
-      EXPECT_NEAR(std::ldexp(told[pushed].drag, -DrivenContact::kDrag), kPush / kMass * 0.0015 - 0.1 * 1000 * testing::kLoss,
+      EXPECT_NEAR(std::ldexp(signalled[pushed].drag, -DrivenContact::kDrag), kPush / kMass * 0.0015 - 0.1 * 1000 * testing::kLoss,
                   0.15);
     }
   }
 }
 
-TEST(DrivenChoice, WhatIsHeldIsToldAtOnce) {
+TEST(DrivenChoice, WhatIsHeldIsSignalledAtOnce) {
   Pushing pushing(0);
   pushing.contact.kind = ContactKind::spring;
   pushing.contact.stiffness = kHold;
-  const DrivenContact told = pushing.step();
-  EXPECT_TRUE(told.is_held);
-  EXPECT_EQ(told.normal, Vec3i{});
+  const DrivenContact signalled = pushing.step();
+  EXPECT_TRUE(signalled.is_held);
+  EXPECT_EQ(signalled.normal, Vec3i{});
 }
 
 /// The contact of another user is where no path leads.
-TEST(DrivenChoice, AnotherUsersContactIsNotTold) {
+TEST(DrivenChoice, AnotherUsersContactIsNotSignalled) {
   Pushing pushing(2);
   for (int i = 0; i < 10; ++i) pushing.step();
   EXPECT_NE(pushing.step(), DrivenContact{});

@@ -173,7 +173,7 @@ TEST_F(ProbeTest, ProxyMovesWithTheObject) {
   expect_near(after.proxy - before.proxy, poses[0].position, 1e-15);
 }
 
-TEST_F(ProbeTest, BoxThatRunsIntoARestingProbeIsFelt) {
+TEST_F(ProbeTest, BoxThatRunsIntoARestingProbeIsRendered) {
   RigidProbe probe(objects, touch);
   poses[0].position = {-0.05, 0, 0};
   EXPECT_EQ(probe.move({0, 0, 0}, false, poses).contact.kind, ContactKind::none);
@@ -213,7 +213,7 @@ TEST_F(ProbeTest, TurnedObjectTurnsTheForce) {
   expect_near(hit.force, 0.63 * normal, 1e-12);
 }
 
-/// Who tells the probe what moves pays less and feels the same, bit for bit.
+/// Who names to the probe what moves pays less and feels the same, bit for bit.
 TEST(RigidProbe, AttendedOnlyFeelsTheSame) {
   Random random(3);
   const auto any = [&random](double size) { return random.uniform(-size, size); };

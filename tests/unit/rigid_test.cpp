@@ -309,7 +309,7 @@ TEST(Rigid, AForceBoundFinerThanTheGridMeansTheNearestPlaceOnIt) {
   sample.velocity = sample.angular_velocity = {};
   int sent = 0;
   for (std::int64_t tick = 500; tick < 1000; ++tick) sent += send(tick) ? 1 : 0;
-  EXPECT_LT(sent, 5) << "at rest nothing can be told better";
+  EXPECT_LT(sent, 5) << "at rest nothing can be sent better";
 }
 
 TEST(Rigid, OptionsOutsideTheirRangeAreRefused) {
@@ -416,7 +416,7 @@ TEST(Rigid, LostAndStalePacketsChangeNothing) {
 }
 
 /// A packet is lost, and the receiver asks for a key packet as soon as it notices.
-TEST(Rigid, ARequestedKeyPacketMendsALoss) {
+TEST(Rigid, ARequestedKeyPacketRepairsALoss) {
   constexpr std::size_t kObjects = 3;
   for (const std::uint8_t span : {std::uint8_t{1}, std::uint8_t{8}}) {
     SceneSpec spec = spec_of(kObjects);

@@ -84,7 +84,7 @@ SenderOptions options_of(Baseline baseline, double heartbeat) {
   return out;
 }
 
-/// A sender that shares, and one alone that is told the same.
+/// A sender that shares, and one alone that is given the same.
 struct Pair {
   Sender sharing, alone;
   std::uint64_t seed;
@@ -179,7 +179,7 @@ TEST(SharedTruth, WhoMissesTicksSeesWhatHasMovedMeanwhile) {
   }
 }
 
-/// What is told still moves where the truth has stopped: it is looked at until it is told otherwise, or comes to rest itself.
+/// What was sent still moves where the truth has stopped: it is looked at until it is sent again, or comes to rest itself.
 TEST(SharedTruth, APredictionThatMovesIsWatchedThoughTheTruthRests) {
   constexpr double kBound = 1e-3, kFriction = 0.2, kBraking = kFriction * 9.81;  // [m], 1, [m/s^2]
   for (const double braking : {0.0, kBraking}) {

@@ -93,7 +93,7 @@ TEST(SampleTrack, AtTheEndsOfAStretchTheVelocityIsThatOfItsOneSide) {
   EXPECT_EQ(all.at(1051).velocity, Vec3());
 }
 
-/// A jump, a stop and a bounce stay on their lines, with the velocities of these: nothing moves beyond what samples tell.
+/// A jump, a stop and a bounce stay on their lines, with the velocities of these: nothing moves beyond what samples show.
 TEST(SampleTrack, AJumpWithinTheGapStaysOnItsLine) {
   const Recorded all([](double t) { return along_x(t < 0.045 ? 0 : 1); }, every(10, 10));
   for (int ms = 0; ms <= 90; ++ms) {
@@ -191,7 +191,7 @@ TEST(SampleTrack, VelocitiesOfANoisyTrackerAreThoseOfSeveralSamples) {
   EXPECT_LT(std::sqrt(square), 6.5e-3);
 }
 
-/// Samples that are closer than ticks: what is told at ticks follows from about a tick, not from the noise of two neighbours.
+/// Samples that are closer than ticks: what is returned at ticks follows from about a tick, not from the noise of two neighbours.
 TEST(SampleTrack, DenseSamplesMoveOverATick) {
   const auto motion = [](double t) {
     return along_x(t + (std::llround(t * 2e4) % 2 == 0 ? 1e-5 : 0));

@@ -123,7 +123,7 @@ TEST(SceneBuilder, DeformableObjectsAndTheirCoding) {
   EXPECT_TRUE(b.basis.steps.empty()) << "of profile main alone";
 }
 
-TEST(SceneBuilder, StiffnessIsToldByLevels) {
+TEST(SceneBuilder, StiffnessIsDeclaredByLevels) {
   const TriMesh mesh = testing::sheet(1, 1);
   const double fixed = std::numeric_limits<double>::infinity();
   const auto built = SceneBuilder().deformable("a", mesh, {.stiffness = {0.01, 100, 1e9, fixed}}).build();
@@ -221,7 +221,7 @@ TEST(SceneBuilder, WhatIsWrongWithNoObjectNamesNone) {
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").declare_bounds({.perceptual_fraction = 4}, {})), "R-API-4 of ''");
 }
 
-/// The grid follows from the size of the world; where that and the bounds do not go together, both figures are told.
+/// The grid follows from the size of the world; where that and the bounds do not go together, both figures are reported.
 TEST(SceneBuilder, AWorldHasASize) {
   const auto exponent = [](double metres) { return SceneBuilder().rigid("a").world_size(metres).build().value()->grid.position; };
   EXPECT_EQ(exponent(1), 22) << "no finer than usual";
@@ -247,7 +247,7 @@ TEST(SceneBuilder, AWorldHasASize) {
   EXPECT_NE(away.error().detail.find("512 m"), std::string::npos) << away.error().detail;
 }
 
-TEST(SceneBuilder, HowManyAreTooManyIsTold) {
+TEST(SceneBuilder, HowManyAreTooManyIsReported) {
   SceneBuilder builder;
   for (int i = 0; i < 12; ++i) builder.rigid("o" + std::to_string(i));
   DecodeLimits limits;

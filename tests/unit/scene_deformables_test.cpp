@@ -37,7 +37,7 @@ TEST(SceneDeformables, RoundTrip) {
   EXPECT_EQ(write_scene(*parsed->scene).value(), bytes);
 }
 
-TEST(SceneDeformables, StiffnessCostsAByteForEachVertexAndNothingWhereItIsNotTold) {
+TEST(SceneDeformables, StiffnessCostsAByteForEachVertexAndNothingWhereItIsNotDeclared) {
   SceneSpec spec = two_deformables();
   const auto without = write_scene(*testing::shared(spec)).value();
   spec.deformables[1].stiffness = {0, 1, 97, 255};
@@ -47,11 +47,11 @@ TEST(SceneDeformables, StiffnessCostsAByteForEachVertexAndNothingWhereItIsNotTol
   ASSERT_TRUE(parsed) << parsed.error().rule;
   EXPECT_EQ(parsed->scene->deformables, spec.deformables);
   EXPECT_TRUE(parsed->scene->deformables[0].stiffness.empty());
-  const DeformableObject& told = parsed->scene->deformables[1];
-  const Triangle& corners = told.triangles[0];
+  const DeformableObject& declared = parsed->scene->deformables[1];
+  const Triangle& corners = declared.triangles[0];
   const double between =
-      0.25 * stiffness_of_level(told.stiffness[corners[1]]) + 0.75 * stiffness_of_level(told.stiffness[corners[2]]);
-  EXPECT_EQ(stiffness_at(told, 0, {0, 0.25, 0.75}), between);
+      0.25 * stiffness_of_level(declared.stiffness[corners[1]]) + 0.75 * stiffness_of_level(declared.stiffness[corners[2]]);
+  EXPECT_EQ(stiffness_at(declared, 0, {0, 0.25, 0.75}), between);
 }
 
 TEST(SceneDeformables, ASceneWithoutThemHasNoByteAboutThem) {
@@ -117,7 +117,7 @@ TEST(SceneDeformables, ASpringBasisIsComputedAndNotWritten) {
       << "mode_count, runs of fixed vertices";
 }
 
-TEST(SceneDeformables, ClustersAreToldWhereTheyAreNotExpected) {
+TEST(SceneDeformables, ClustersAreCodedWhereTheyAreNotExpected) {
   SceneSpec spec = two_deformables();
   DeformableObject& object = spec.deformables[0];
   object.basis = {};

@@ -98,7 +98,7 @@ TEST(SceneSyntax, NoSceneIsMadeThatTheReaderWouldRefuse) {
   }
 }
 
-/// Replace the body's tail and mend size and check value.
+/// Replace the body's tail and repair size and check value.
 Bytes with_extension(Bytes bytes, const Bytes& extension) {
   bytes.resize(bytes.size() - 4);
   bytes.insert(bytes.end(), extension.begin(), extension.end());

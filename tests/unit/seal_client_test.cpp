@@ -152,7 +152,7 @@ TEST(SealClient, WhereNobodyAnswersItGivesUp) {
   EXPECT_EQ(pair.error, "R-SEA-1");
   EXPECT_EQ(sent, (std::vector<std::uint64_t>{0,    250,  750,  1250, 1750, 2250, 2750, 3250, 3500, 4000, 4500,
                                               5000, 5500, 6000, 6500, 6750, 7250, 7750, 8250, 8750, 9250, 9750}));
-  EXPECT_TRUE(pair.client.handle_timeout(pair.now + 1)) << "an end is told once";
+  EXPECT_TRUE(pair.client.handle_timeout(pair.now + 1)) << "an end is reported once";
 }
 
 TEST(SealClient, HearsNothingButItsServerBeforeItIsOpen) {

@@ -169,7 +169,7 @@ TEST_F(SealKeyList, HasEachNameOnceAndNoMoreThan1024) {
   EXPECT_EQ(list.users().size(), KeyList::kMostUsers);
 }
 
-/// Another file, or this one changed, is read; a broken one is told of once.
+/// Another file, or this one changed, is read; a broken one is reported once.
 TEST_F(SealKeyList, AFileThatChangesIsReadAgain) {
   const auto age = [this] {  // as if it had been written some time ago
     std::filesystem::last_write_time(path(), std::filesystem::file_time_type::clock::now() - std::chrono::seconds(1));
@@ -191,7 +191,7 @@ TEST_F(SealKeyList, AFileThatChangesIsReadAgain) {
     const auto refused = file.read_again();
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().file, path());
-    EXPECT_EQ(file.read_again(), false) << "told once";
+    EXPECT_EQ(file.read_again(), false) << "reported once";
   }
   chmod(written(kHead).c_str(), 0644);
   EXPECT_STREQ(file.read_again().error().error.rule, "R-KEY-2");
@@ -234,7 +234,7 @@ TEST(SealUsers, TheServerKnowsWhoseAssociationItIs) {
   EXPECT_EQ(pair.server.user_of(1), nullptr);
 }
 
-TEST(SealUsers, WhoIsRemovedIsToldAndOthersStay) {
+TEST(SealUsers, WhoIsRemovedGetsAnAlertAndOthersStay) {
   LabPair anna(key_of("anna", "aa"));
   auto ben = Client::create(key_of("ben", "bb"), anna.now).value();
   const net::Address there = tactus::testing::address("192.0.2.8:4000");
@@ -316,7 +316,7 @@ TEST(SealUsers, WhoIsAddedWhileTryingComesIn) {
 
 // ==== a wrong key ====
 
-TEST(SealWrongKey, IsToldAtOnceWhicheverPartOfItIsWrong) {
+TEST(SealWrongKey, IsReportedAtOnceWhicheverPartOfItIsWrong) {
   std::vector<std::vector<std::size_t>> answers;
   for (const auto& [name, byte] : {std::pair("lab", "5b"), std::pair("lob", "5a"), std::pair("lob", "5b")}) {
     SealPair pair(key_of(name, byte));
@@ -337,8 +337,8 @@ TEST(SealWrongKey, IsToldAtOnceWhicheverPartOfItIsWrong) {
   EXPECT_EQ(answers[0], answers[2]);
 }
 
-TEST(SealWrongKey, IsToldWithinASecondThroughLoss) {
-  int told = 0;
+TEST(SealWrongKey, IsReportedWithinASecondThroughLoss) {
+  int doubted = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
     SealPair pair(key_of("lab", "5b"));
     std::mt19937 random(seed);
@@ -346,9 +346,9 @@ TEST(SealWrongKey, IsToldWithinASecondThroughLoss) {
       return random() % 10 == 0 ? std::vector<Bytes>{} : std::vector<Bytes>{datagram};
     };
     pair.run(1'000'000);
-    told += pair.client.is_doubted() ? 1 : 0;
+    doubted += pair.client.is_doubted() ? 1 : 0;
   }
-  EXPECT_GE(told, 95);
+  EXPECT_GE(doubted, 95);
 }
 
 /// The alert as anyone can send it, before and after every datagram of the handshake and later.

@@ -229,7 +229,7 @@ TEST(SealServer, FloodsReachNobodyElse) {
   EXPECT_LE(flooded, (kSeconds + 1) * net::kClientRate.datagrams);
   EXPECT_LE(crowd.server.counters().cookies - cookies, (kSeconds + 1) * net::kStrangersRate.datagrams);
   EXPECT_GT(crowd.server.counters().limited, kSeconds * 80'000);
-  EXPECT_GT(crowd.server.limited_of(3), kSeconds * 40'000) << "who it was can be told";
+  EXPECT_GT(crowd.server.limited_of(3), kSeconds * 40'000) << "who it was is known";
   EXPECT_EQ(crowd.server.limited_of(1), 0u);
 }
 
@@ -311,7 +311,7 @@ TEST(SealServer, KeepsWhatIsNeededAndWhatIsNew) {
   EXPECT_EQ(crowd.server.poll_closed(), 1u);
   EXPECT_FALSE(crowd.server.poll_closed());
   crowd.drain();
-  EXPECT_EQ(crowd.open(), 1u) << "the others were told";
+  EXPECT_EQ(crowd.open(), 1u) << "the others got an alert";
   EXPECT_TRUE(crowd.server.seal(2, bytes_of("x")));
   const auto gone = crowd.server.seal(1, bytes_of("x"));
   ASSERT_FALSE(gone);

@@ -76,7 +76,7 @@ std::vector<Bytes> bytes_of(std::span<const Packet> packets) {
   return out;
 }
 
-TEST(Sender, SubstreamsComeInOrderAndWhatIsFeltFirst) {
+TEST(Sender, SubstreamsComeInOrderAndWhatIsRenderedFirst) {
   const SharedScene scene = testing::scene_of_every_kind(kSquares);
   auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.first_sequence = 65530}}).value();
   World world;
@@ -236,7 +236,7 @@ TEST(Sender, NothingChangesAfterAnError) {
   EXPECT_GT(packets, 100u);
 }
 
-/// A jump that no update can name in one: the next tick tells the rest.
+/// A jump that no update can name in one: the next tick sends the rest.
 TEST(Sender, AJumpAcrossTheWholeGridTakesTwoUpdates) {
   SceneSpec spec = testing::spec_of(1);
   spec.objects[0].initial.position = {-2100000000, 0, 0};
@@ -348,40 +348,40 @@ TEST(Sender, AForgottenKeyPacketComesAgain) {
   EXPECT_TRUE(next().bytes.empty());
 }
 
-/// Beside a sender that is not told: of other substreams, of packets that never were, of old ones, of the same one again.
+/// Beside a sender that is not informed: of other substreams, of packets that never were, of old ones, of the same one again.
 TEST(Sender, UnknownAndOldAcknowledgementsChangeNothing) {
   for (const Baseline baseline : {Baseline::previous, Baseline::acknowledged}) {
     const SharedScene scene = testing::scene_of_every_kind(kSquares, 8);
     const SenderOptions options{
         .triggers = {}, .deformable = {}, .policy = {.key_interval = 0, .first_sequence = 65500, .baseline = baseline}};
-    auto told = Sender::create(scene, options).value(), spared = Sender::create(scene, options).value();
+    auto informed = Sender::create(scene, options).value(), spared = Sender::create(scene, options).value();
     World world;
     std::array<std::vector<std::uint16_t>, kSubstreams> sent;
     std::size_t others = 0;
     for (std::int64_t tick = 0; tick < 200; ++tick) {
       Frame frame = world.step();
-      const auto packets = all(told.encode(tick, frame.truth()));
+      const auto packets = all(informed.encode(tick, frame.truth()));
       ASSERT_EQ(bytes_of(packets), bytes_of(all(spared.encode(tick, frame.truth())))) << tick;
       for (const Packet& packet : packets) sent.at(packet.substream).push_back(packet.sequence);
-      told.acknowledge(kSubstreams, 65500);
-      told.acknowledge(1000, 1);
+      informed.acknowledge(kSubstreams, 65500);
+      informed.acknowledge(1000, 1);
       for (std::size_t i = 0; i < kSubstreams; ++i) {
         if (sent[i].empty()) {
-          told.acknowledge(i, 65500);
+          informed.acknowledge(i, 65500);
           continue;
         }
         const std::uint16_t newest = sent[i].back();
         for (const unsigned ahead : {1u, 2u, 300u, 32768u, 60000u})
-          told.acknowledge(i, static_cast<std::uint16_t>(newest + ahead));
-        if (sent[i].size() > 12) told.acknowledge(i, sent[i][sent[i].size() - 10]);
+          informed.acknowledge(i, static_cast<std::uint16_t>(newest + ahead));
+        if (sent[i].size() > 12) informed.acknowledge(i, sent[i][sent[i].size() - 10]);
         if (baseline == Baseline::previous) {
-          told.acknowledge(i, newest);
-        } else if (tick % 3 == 0 && sent[i].size() > 2) {  // both are told of this one, and then of nothing older
+          informed.acknowledge(i, newest);
+        } else if (tick % 3 == 0 && sent[i].size() > 2) {  // both are informed of this one, and then of nothing older
           const std::uint16_t known = sent[i][sent[i].size() - 2];
-          told.acknowledge(i, known);
+          informed.acknowledge(i, known);
           spared.acknowledge(i, known);
           for (std::size_t back = 2; back < std::min<std::size_t>(sent[i].size(), 20); ++back)
-            told.acknowledge(i, sent[i][sent[i].size() - back]);
+            informed.acknowledge(i, sent[i][sent[i].size() - back]);
           ++others;
         }
       }

@@ -59,7 +59,7 @@ void expect_the_same(const Scene& scene, int ticks) {
     Hand hand(scene.users[0], scene.users[0].grip, seeds.next());
     int touched = 0;
     for (int tick = 0; tick < ticks; ++tick) {
-      const std::vector<DeviceSample> devices{hand.step(client->felt(0), client->watched(0))};
+      const std::vector<DeviceSample> devices{hand.step(client->rendered_force(0), client->watched(0))};
       server->observe();
       server->touch(link.to_server(devices));
       const auto packets = server->encode().value();
@@ -73,7 +73,7 @@ void expect_the_same(const Scene& scene, int ticks) {
       const UserSample& user = whole.frame().users[0];
       ASSERT_EQ(user.device.position, devices[0].position) << "tick " << tick;
       ASSERT_EQ(user.device.buttons, devices[0].buttons) << "tick " << tick;
-      ASSERT_EQ(user.force, client->felt(0)) << "tick " << tick;
+      ASSERT_EQ(user.force, client->rendered_force(0)) << "tick " << tick;
       ASSERT_EQ(user.server_force, server->frame().users[0].server_force) << "tick " << tick;
       touched += norm(user.force) > 0 ? 1 : 0;
     }
@@ -111,22 +111,22 @@ TEST(RemoteClient, ReadsNoReceiverThatIsGone) {
     client->show_nothing();
     receiver.reset();
     for (int tick = 0; tick < 100; ++tick) touch();
-    EXPECT_TRUE(is_finite(client->felt(0)));
+    EXPECT_TRUE(is_finite(client->rendered_force(0)));
   }
 }
 
 #ifdef TACTUS_WITH_FEM
 /// The map that clients render by is in the declaration, once, if they do, and in no other stream.
-TEST(Server, TellsTheStiffnessToClientsThatRenderByIt) {
+TEST(Server, DeclaresTheStiffnessToClientsThatRenderByIt) {
   Scene scene = shipped("membrane-small");
   ServerOptions options;
   options.codec.emplace();
-  const auto told = [&] { return Server::create(scene, options).value()->stream_scene()->deformables[0].stiffness; };
-  EXPECT_TRUE(told().empty());
+  const auto declared = [&] { return Server::create(scene, options).value()->stream_scene()->deformables[0].stiffness; };
+  EXPECT_TRUE(declared().empty());
   scene.compensation.emplace().method = CompensationMethod::simulation;
-  EXPECT_TRUE(told().empty());
+  EXPECT_TRUE(declared().empty());
   scene.compensation->method = CompensationMethod::stiffness;
-  const auto levels = told();
+  const auto levels = declared();
   const auto map = stiffness_map(scene.deformables[0]).value().stiffness;
   ASSERT_EQ(levels.size(), map.size());
   for (std::size_t v = 0; v < map.size(); ++v)
@@ -135,8 +135,8 @@ TEST(Server, TellsTheStiffnessToClientsThatRenderByIt) {
 }
 #endif
 
-/// A surface that stays where it was while the device goes 2 mm deeper in 20 ms: softer by what the declaration tells of it.
-TEST(Compensation, RendersASurfaceByTheStiffnessThatIsTold) {
+/// A surface that stays where it was while the device goes 2 mm deeper in 20 ms: softer by what is declared of it.
+TEST(Compensation, RendersASurfaceByTheStiffnessThatIsDeclared) {
   Scene scene;
   scene.users.resize(1);
   scene.compensation.emplace();
@@ -159,11 +159,11 @@ TEST(Compensation, RendersASurfaceByTheStiffnessThatIsTold) {
   const double whole = 300 * 4e-3;
   EXPECT_NEAR(rendered(&soft), whole * (1 - 0.75 * 0.5), 0.02 * whole) << "K = 300/400 of the way of 20 ms, half of the stretch";
   EXPECT_NEAR(rendered(&fixed), whole, 1e-12) << "it does not move";
-  EXPECT_NEAR(rendered(nullptr), whole, 1e-12) << "nothing is told";
+  EXPECT_NEAR(rendered(nullptr), whole, 1e-12) << "nothing is declared";
 }
 
 /// What a client shows and lets feel needs nothing of the physics: a square, then the same square 2 mm lower.
-TEST(DeformableView, ShowsAndIsFeltWithoutFiniteElements) {
+TEST(DeformableView, ShowsAndRendersWithoutFiniteElements) {
   Scene scene;
   scene.users.resize(1);
   scene.deformables.resize(1);

@@ -44,7 +44,7 @@ SharedScene scene() {
 }
 
 /// So that its check holds in this epoch.
-void mend(Bytes& datagram, std::uint64_t epoch) {
+void repair(Bytes& datagram, std::uint64_t epoch) {
   if (datagram.size() < 6) return;
   std::array<std::uint8_t, 9> front{};
   for (std::size_t i = 0; i < 8; ++i) front[i] = static_cast<std::uint8_t>(epoch >> 8 * i);
@@ -193,7 +193,7 @@ Bytes damaged(Random& random, const Attacked& world, std::uint64_t epoch) {
   if (how == 1) out[0] = static_cast<std::uint8_t>(random()), out[1] = static_cast<std::uint8_t>(random());
   if (how < 4)
     for (std::uint64_t k = random() % 4; k > 0; --k) out[random() % out.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
-  if (how != 4) mend(out, random() % 16 == 0 ? 0 : epoch);
+  if (how != 4) repair(out, random() % 16 == 0 ? 0 : epoch);
   return out;
 }
 

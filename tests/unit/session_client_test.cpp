@@ -180,7 +180,7 @@ TEST(SessionClient, ForceFadesWithin100MillisecondsWithoutNewsAndReturns) {
   EXPECT_EQ(before, 1) << "long after the outage";
 }
 
-/// A scene of nothing but a mesh: its packets tell the time, too, and the shape of the tick shown is within its bounds.
+/// A scene of nothing but a mesh: its packets signal the time, too, and the shape of the tick shown is within its bounds.
 TEST(SessionClient, ShowsASceneOfMeshesOnly) {
   constexpr std::uint32_t kSquares = 12;
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
@@ -213,7 +213,7 @@ TEST(SessionClient, ShowsASceneOfMeshesOnly) {
   EXPECT_LE(worst, DeformableThresholds{}.visual + 1e-6);
 }
 
-TEST(SessionClient, TellsAtOnceOfBoundsThatNoDeviceCanKeep) {
+TEST(SessionClient, ReportsAtOnceBoundsThatNoDeviceCanKeep) {
   for (const double position : {0.0, -1.0, std::nan("")}) {
     const auto client = SessionClient::create({.role = Role::participant, .device = {.position = position}});
     ASSERT_FALSE(client) << position;

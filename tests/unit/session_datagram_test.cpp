@@ -123,7 +123,7 @@ TEST(Datagram, ClocksAreNotAtTheEndOfTime) {
   }
 }
 
-TEST(Datagram, WhatIsNoJoinIsTold) {
+TEST(Datagram, WhatIsNoJoinIsReported) {
   DatagramWriter writer(Direction::up);
   const Bytes join = copy(writer.write(Join{}));
   for (const std::size_t at : {2u, 5u, 7u}) {

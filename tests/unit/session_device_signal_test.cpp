@@ -98,9 +98,9 @@ TEST(DeviceSignal, InContactTheErrorOfTheForceIsWithinP) {
       const double depth = 4e-3 * std::sin(1e-3 * static_cast<double>(tick));  // of the proxy before the device
       const DeviceContact contact{truth.position + Vec3{0, 0.6 * depth, 0.8 * depth}, 700};
       const DeviceSample shown = channel.send(tick, truth, contact);
-      const Vec3 felt = contact.stiffness * (contact.proxy - truth.position);
+      const Vec3 wanted = contact.stiffness * (contact.proxy - truth.position);
       const Vec3 applied = contact.stiffness * (contact.proxy - shown.position);
-      const double ratio = norm(applied - felt) / (p * std::max(norm(felt), kFloor));
+      const double ratio = norm(applied - wanted) / (p * std::max(norm(wanted), kFloor));
       worst = std::max(worst, ratio);
       ASSERT_LE(ratio, 1.0) << tick;
       ASSERT_LE(norm(shown.position - truth.position), 1e-3);

@@ -109,21 +109,21 @@ TEST(Driven, APlaceIsLookedUpAgainOnceThePastHasChanged) {
   EXPECT_NE(path.at(15), before) << "the second packet was lost";
 }
 
-struct Course {
+struct Run {
   std::size_t shown = 0, outside = 0, driven = 0;
   std::uint64_t packets = 0;
 };
 
-/// A shipped scene over a network.   in  told  times the true mass: what clients are told; 0: nothing is driven
-Course course(const char* name, double told, const sim::LinkOptions& link, std::int64_t ticks) {
+/// A shipped scene over a network.   in  model_scale  times the true mass: what is declared to clients; 0: nothing is driven
+Run run(const char* name, double model_scale, const sim::LinkOptions& link, std::int64_t ticks) {
   const sim::Scene scene = sim::load_scene(*sim::find_scene(name)).value();
   sim::SessionNetwork* network = nullptr;
   sim::ChannelOptions channel;
   channel.sender.triggers.visual_position = 3e-4;
-  channel.told = told;
+  channel.client_model_scale = model_scale;
   channel.network = [&](SharedScene declared, std::size_t users,
                         const SenderOptions& sender) -> Result<std::unique_ptr<sim::Network>> {
-    EXPECT_EQ(declared->driven.has_value(), told != 0);
+    EXPECT_EQ(declared->driven.has_value(), model_scale != 0);
     TACTUS_TRY(auto made, sim::SessionNetwork::create(std::move(declared), users, sender, {.uplink = link, .downlink = link}));
     network = made.get();
     return made;
@@ -131,7 +131,7 @@ Course course(const char* name, double told, const sim::LinkOptions& link, std::
   auto simulation = sim::Simulation::create(scene, {.seed = 1, .grip = {}, .channel = channel});
   EXPECT_TRUE(simulation) << simulation.error().rule;
   std::vector<Vec3> truth;
-  Course out;
+  Run out;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     EXPECT_TRUE(simulation->step());
     truth.push_back(simulation->frame().objects[0].pose.position);
@@ -148,27 +148,27 @@ Course course(const char* name, double told, const sim::LinkOptions& link, std::
 
 TEST(Driven, TheClientShowsWhereItsDeviceHasMovedAnObject) {
   for (const char* scene : {"push-1dof", "rotate-6dof"}) {
-    const Course driven = course(scene, 1, {.delay = 10'000}, 3000);
+    const Run driven = run(scene, 1, {.delay = 10'000}, 3000);
     EXPECT_GT(driven.shown, 1900u) << "from the first packet on";
     EXPECT_EQ(driven.outside, 0u) << scene;
     EXPECT_GT(driven.driven, 300u);
-    const Course coded = course(scene, 0, {.delay = 10'000}, 3000);
+    const Run coded = run(scene, 0, {.delay = 10'000}, 3000);
     EXPECT_EQ(coded.driven, 0u);
     EXPECT_LT(driven.packets, coded.packets) << scene;
   }
 }
 
 TEST(Driven, AWrongMassKeepsTheBounds) {
-  const Course right = course("push-1dof", 1, {.delay = 10'000}, 3000);
-  const Course wrong = course("push-1dof", 1.2, {.delay = 10'000}, 3000);
+  const Run right = run("push-1dof", 1, {.delay = 10'000}, 3000);
+  const Run wrong = run("push-1dof", 1.2, {.delay = 10'000}, 3000);
   EXPECT_EQ(wrong.outside, 0u);
   EXPECT_GT(wrong.packets, right.packets);
 }
 
 /// What is lost leads both ends apart for a round trip, so that nothing is driven once the server sees that packets are lost.
 TEST(Driven, WherePacketsAreLostNothingIsDriven) {
-  const Course lost = course("rotate-6dof", 1, {.delay = 10'000, .jitter = 3'000, .loss = 0.05}, 5000);
-  const Course clean = course("rotate-6dof", 1, {.delay = 10'000, .jitter = 3'000}, 5000);
+  const Run lost = run("rotate-6dof", 1, {.delay = 10'000, .jitter = 3'000, .loss = 0.05}, 5000);
+  const Run clean = run("rotate-6dof", 1, {.delay = 10'000, .jitter = 3'000}, 5000);
   EXPECT_LT(lost.driven, clean.driven / 2);
   EXPECT_LT(lost.outside, lost.shown / 100);
   EXPECT_LT(clean.outside, clean.shown / 1000);
@@ -232,10 +232,10 @@ Cost cost(const char* name, std::uint64_t seed, bool known) {
     const Pose shown = to_pose(receiver.replica().pose(0, tick), declared->grid.position);
     const double error = norm(shown.position - frame.objects[0].pose.position);
     const Contact& contact = frame.users[0].contact;
-    const bool felt =
+    const bool keeps_force =
         contact.kind == ContactKind::none ||
         haptic_ratio(options.triggers, contact_force(contact, frame.objects[0].pose), contact_force(contact, shown)) <= 1;
-    out.outside += error > 3e-4 || !felt ? 1u : 0u;
+    out.outside += error > 3e-4 || !keeps_force ? 1u : 0u;
   }
   out.bytes /= out.packets;
   out.packets *= 1000 / static_cast<double>(ticks);

@@ -17,17 +17,17 @@ namespace {
 
 constexpr double kVisual = 2.5e-4;
 
-struct Course {
+struct Run {
   std::size_t frames = 0, outside = 0;  // compared; with a vertex over the visual bound
   std::uint64_t packets = 0, bytes = 0, datagrams = 0;
-  double felt = 0;  // [N] mean difference between the force felt and the server's, from its own state
+  double force_error = 0;  // [N] mean difference between the rendered force and the server's, from its own state
 };
 
-/// A scene over a network.   in  told  times the true Young's modulus: what clients are told
-Course course(const sim::Scene& scene, const sim::LinkOptions& link, std::int64_t ticks, double told = 1) {
+/// A scene over a network.   in  model_scale  times the true Young's modulus: what is declared to clients
+Run run(const sim::Scene& scene, const sim::LinkOptions& link, std::int64_t ticks, double model_scale = 1) {
   sim::SessionNetwork* network = nullptr;
   sim::ChannelOptions channel;
-  channel.told = told;
+  channel.client_model_scale = model_scale;
   channel.sender.deformable.thresholds = {.visual = kVisual, .weber_fraction = 0.025, .depth_floor = 2e-4};
   channel.coding.spring_modes = 48;
   channel.network = [&](SharedScene declared, std::size_t users,
@@ -40,12 +40,12 @@ Course course(const sim::Scene& scene, const sim::LinkOptions& link, std::int64_
   EXPECT_TRUE(simulation) << simulation.error().rule;
   const std::uint32_t rate = scene.deformables[0].rate;
   std::vector<std::vector<float>> truth;  // by frame
-  Course out;
+  Run out;
   std::int64_t compared = -1;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     EXPECT_TRUE(simulation->step());
     const UserSample& user = simulation->frame().users[0];
-    out.felt += norm(user.force - user.server_force) / static_cast<double>(ticks);
+    out.force_error += norm(user.force - user.server_force) / static_cast<double>(ticks);
     if (tick % rate == 0) truth.push_back(simulation->frame().meshes[0].displacements);
     const std::int64_t shown = simulation->shown_tick(0), frame = shown / rate;
     if (shown < 0 || frame == compared) continue;
@@ -70,15 +70,15 @@ Course course(const sim::Scene& scene, const sim::LinkOptions& link, std::int64_
 sim::Scene membrane() { return sim::load_scene(*sim::find_scene("membrane-large")).value(); }
 
 TEST(Elastic, OneWhoKnowsTheBodyNeedsHardlyAPacket) {
-  const Course knows = course(membrane(), {.delay = 10'000}, 4000);
+  const Run knows = run(membrane(), {.delay = 10'000}, 4000);
   EXPECT_GT(knows.frames, 150u);
   EXPECT_EQ(knows.outside, 0u);
   EXPECT_LE(knows.packets, 4u);
-  const Course ignorant = course(membrane(), {.delay = 10'000}, 4000, 0);
+  const Run ignorant = run(membrane(), {.delay = 10'000}, 4000, 0);
   EXPECT_EQ(ignorant.outside, 0u);
   EXPECT_GT(ignorant.packets, 20 * knows.packets);
   EXPECT_LT(knows.datagrams, ignorant.datagrams / 3);
-  EXPECT_LT(knows.felt, 1.02 * ignorant.felt) << "late by the same network, and no more than that";
+  EXPECT_LT(knows.force_error, 1.02 * ignorant.force_error) << "late by the same network, and no more than that";
 }
 
 /// The method that the program chooses, and a scene with friction in sub-steps of velocity Verlet.
@@ -86,7 +86,7 @@ TEST(Elastic, TheBodyStepsAsTheServerDoes) {
   sim::Scene implicit = membrane();
   implicit.deformables[0].method = "auto";
   for (const sim::Scene& scene : {implicit, sim::load_scene(*sim::find_scene("membrane")).value()}) {
-    const Course knows = course(scene, {.delay = 10'000}, 4000);
+    const Run knows = run(scene, {.delay = 10'000}, 4000);
     EXPECT_EQ(knows.outside, 0u);
     EXPECT_LE(knows.packets, 4u);
   }
@@ -94,11 +94,11 @@ TEST(Elastic, TheBodyStepsAsTheServerDoes) {
 
 /// Young's modulus is 10 % off: the bounds hold, and packets are fewer than without a body.
 TEST(Elastic, AWrongBodyKeepsTheBounds) {
-  const Course wrong = course(membrane(), {.delay = 10'000}, 4000, 1.1);
-  const Course ignorant = course(membrane(), {.delay = 10'000}, 4000, 0);
+  const Run wrong = run(membrane(), {.delay = 10'000}, 4000, 1.1);
+  const Run ignorant = run(membrane(), {.delay = 10'000}, 4000, 0);
   EXPECT_EQ(wrong.outside, 0u);
   EXPECT_LT(wrong.packets, ignorant.packets);
-  EXPECT_LT(wrong.felt, 1.02 * ignorant.felt);
+  EXPECT_LT(wrong.force_error, 1.02 * ignorant.force_error);
 }
 
 /// A user of whom the client knows nothing presses beside its own.
@@ -109,13 +109,13 @@ TEST(Elastic, AnotherUserKeepsTheBounds) {
   for (sim::PathPhase& phase : other.path) phase.to.x = -phase.to.x;
   other.start.x = -other.start.x;
   scene.users.push_back(other);
-  const Course two = course(scene, {.delay = 10'000}, 4000);
+  const Run two = run(scene, {.delay = 10'000}, 4000);
   EXPECT_EQ(two.outside, 0u);
   EXPECT_GT(two.packets, 10u);
 }
 
 TEST(Elastic, LossesLeadAstrayForARoundTripAtMost) {
-  const Course lossy = course(membrane(), {.delay = 10'000, .jitter = 3'000, .loss = 0.05}, 4000);
+  const Run lossy = run(membrane(), {.delay = 10'000, .jitter = 3'000, .loss = 0.05}, 4000);
   EXPECT_LT(lossy.outside, lossy.frames / 50);
   EXPECT_LE(lossy.packets, 20u);
 }

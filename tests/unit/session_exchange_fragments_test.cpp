@@ -112,7 +112,7 @@ TEST(ExchangeFragments, ALostFragmentComesAgainAlone) {
   EXPECT_EQ(ends.server->sent().highest_acknowledged(), ends.server->sent().newest()) << "what comes again is acknowledged, too";
 }
 
-/// An acknowledgement tells of 65 numbers: one of a packet in more fragments than that must go before all have come.
+/// An acknowledgement reports 65 numbers: one of a packet in more fragments than that must go before all have come.
 TEST(ExchangeFragments, APacketOfManyFragmentsIsAcknowledgedOnTheWay) {
   Ends ends({.squares = 160, .count = 1, .noise = 2e-2}, 0);
   ends.submit();

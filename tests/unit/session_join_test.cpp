@@ -46,7 +46,7 @@ TEST(SessionJoin, KeepsToTheRateThatTheUserStates) {
   EXPECT_LT(result.worst, 0.005);
 }
 
-/// 20 kbit/s, of which another client takes some, and one in ten datagrams lost: it takes its time, but is told all the way.
+/// 20 kbit/s, of which another client takes some, and one in ten datagrams lost: it takes its time, but is reported all the way.
 TEST(SessionJoin, ASlowLineIsEnough) {
   const JoinResult result = join({.side = 40, .round_trip = 40'000, .rate = 20e3, .loss = 0.1, .queue = 1'000'000});
   EXPECT_GT(result.live, 1);

@@ -16,12 +16,12 @@ namespace {
 
 // ==== session sent numbers ====
 
-struct Told {
+struct Report {
   std::vector<std::uint64_t> arrived, lost;
 };
 
-Told tell(SentNumbers& sent, const Acknowledgement& said, std::uint64_t now) {
-  Told out;
+Report report(SentNumbers& sent, const Acknowledgement& said, std::uint64_t now) {
+  Report out;
   EXPECT_TRUE(sent.acknowledge(
       said, now, [&](std::uint64_t n) { out.arrived.push_back(n); }, [&](std::uint64_t n) { out.lost.push_back(n); }));
   return out;
@@ -33,9 +33,9 @@ TEST(SentNumbers, EachIsAcknowledgedOnce) {
   SentNumbers sent;
   for (std::uint64_t i = 0; i < 5; ++i) sent.send(1000 * i);
   EXPECT_EQ(sent.next(), 6u);
-  EXPECT_EQ(tell(sent, {3, 0, ~std::uint64_t{0b10}}, 50000).arrived, (std::vector<std::uint64_t>{3, 1}));
-  EXPECT_EQ(tell(sent, {3, 0, ~std::uint64_t{0b10}}, 51000).arrived, (std::vector<std::uint64_t>{}));
-  EXPECT_EQ(tell(sent, {5, 0, ~std::uint64_t{0b1001}}, 51000).arrived, (std::vector<std::uint64_t>{5, 4}));
+  EXPECT_EQ(report(sent, {3, 0, ~std::uint64_t{0b10}}, 50000).arrived, (std::vector<std::uint64_t>{3, 1}));
+  EXPECT_EQ(report(sent, {3, 0, ~std::uint64_t{0b10}}, 51000).arrived, (std::vector<std::uint64_t>{}));
+  EXPECT_EQ(report(sent, {5, 0, ~std::uint64_t{0b1001}}, 51000).arrived, (std::vector<std::uint64_t>{5, 4}));
   EXPECT_EQ(sent.highest_acknowledged(), 5u);
 }
 
@@ -49,7 +49,7 @@ TEST(SentNumbers, WhatWasNeverSentIsRefused) {
     ASSERT_FALSE(said) << newest;
     EXPECT_STREQ(said.error().rule, "R-SES-6");
   }
-  EXPECT_EQ(tell(sent, {1, 0, 0}, 1).arrived.size(), 1u) << "what lies below 1 does not count";
+  EXPECT_EQ(report(sent, {1, 0, 0}, 1).arrived.size(), 1u) << "what lies below 1 does not count";
 }
 
 TEST(SentNumbers, NoMoreThan4096WaitForAnAnswer) {
@@ -57,7 +57,7 @@ TEST(SentNumbers, NoMoreThan4096WaitForAnAnswer) {
   std::uint64_t now = 0;
   while (sent.next()) sent.send(++now);
   EXPECT_EQ(now, 4096u);
-  tell(sent, {3000, 0, kAllMissing}, now);
+  report(sent, {3000, 0, kAllMissing}, now);
   EXPECT_EQ(sent.next(), 4097u);
   while (sent.next()) sent.send(++now);
   EXPECT_EQ(now, 7096u);
@@ -69,16 +69,16 @@ TEST(SentNumbers, TheRoundTripLeavesOutWhatTheOtherEndHeld) {
   for (int i = 0; i < 100; ++i) sent.send(static_cast<std::uint64_t>(10000 * i));
   for (std::uint16_t i = 1; i <= 90; ++i) {
     const std::uint16_t held = static_cast<std::uint16_t>(i % 7 * 50);
-    tell(sent, {i, held, 0}, 10000ull * (i - 1) + 40000 + 16ull * held);
+    report(sent, {i, held, 0}, 10000ull * (i - 1) + 40000 + 16ull * held);
     EXPECT_EQ(sent.sample(), 40000);
   }
   EXPECT_EQ(sent.round_trip()->smoothed, 40000);
   EXPECT_EQ(sent.round_trip()->least, 40000);
   EXPECT_LT(sent.round_trip()->variation, 10) << "it began at half the first sample";
-  tell(sent, {91, Acknowledgement::kNoTiming, 0}, 5000000);
+  report(sent, {91, Acknowledgement::kNoTiming, 0}, 5000000);
   EXPECT_EQ(sent.sample(), std::nullopt);
   EXPECT_EQ(sent.round_trip()->smoothed, 40000) << "without timing nothing is measured";
-  tell(sent, {91, 0, 0}, 9000000);
+  report(sent, {91, 0, 0}, 9000000);
   EXPECT_EQ(sent.sample(), std::nullopt) << "nor by what was acknowledged before";
 }
 
@@ -106,9 +106,9 @@ TEST(SentNumbers, LossIsFoundOut) {
     }
     if (received.due().value_or(now + 1) <= now) back.emplace(now + 20000, received.acknowledge(now));
     for (; !back.empty() && back.begin()->first <= now; back.erase(back.begin())) {
-      const Told told = tell(sent, back.begin()->second, now);
-      arrived += told.arrived.size();
-      for (const std::uint64_t number : told.lost) {
+      const Report reported = report(sent, back.begin()->second, now);
+      arrived += reported.arrived.size();
+      for (const std::uint64_t number : reported.lost) {
         said_lost.insert(number);
         wrong += dropped.contains(number) ? 0u : 1u;
       }
@@ -140,8 +140,8 @@ TEST(WindowedMinimum, ForgetsWhatIsOld) {
 TEST(SentNumbers, FewNumbersSayLittleOfLosses) {
   SentNumbers sent;
   for (int i = 0; i < 10; ++i) sent.send(1000);
-  tell(sent, {5, 0, 0}, 41'000);
-  tell(sent, {10, Acknowledgement::kNoTiming, 0b1}, 500'000);
+  report(sent, {5, 0, 0}, 41'000);
+  report(sent, {10, Acknowledgement::kNoTiming, 0b1}, 500'000);
   EXPECT_EQ(sent.loss(), 65536 / 128);
 }
 
@@ -187,7 +187,7 @@ TEST(ReceivedNumbers, EachIsTakenOnceInAnyOrder) {
   EXPECT_GT(newest, 100000u);
 }
 
-TEST(ReceivedNumbers, AcknowledgementsTellOfWhatWasAccepted) {
+TEST(ReceivedNumbers, AcknowledgementsReportWhatWasAccepted) {
   ReceivedNumbers received;
   EXPECT_FALSE(received.can_acknowledge());
   EXPECT_FALSE(received.due());
@@ -220,7 +220,7 @@ TEST(ReceivedNumbers, WhatIsNotAcceptedIsMissing) {
   for (std::uint64_t i = 0; i < 64; ++i) EXPECT_EQ(said.missing >> i & 1u, (199 - 1 - i) % 5 == 0 ? 1u : 0u);
 }
 
-/// So that each number is told in two acknowledgements at least, though one tells of 65.
+/// So that each number is reported in two acknowledgements at least, though one reports 65.
 TEST(ReceivedNumbers, AfterThirtyTwoTheAcknowledgementIsDueAtOnce) {
   ReceivedNumbers numbers;
   for (std::uint64_t n = 1; n <= 31; ++n) {
@@ -229,13 +229,13 @@ TEST(ReceivedNumbers, AfterThirtyTwoTheAcknowledgementIsDueAtOnce) {
   }
   EXPECT_EQ(numbers.due(), 100 + 10'000);
   numbers.accept(32, 3200, Asks::never, kPatience);
-  EXPECT_EQ(numbers.due(), 3200) << "though it does not ask: nobody else tells of it";
+  EXPECT_EQ(numbers.due(), 3200) << "though it does not ask: nobody else reports it";
   numbers.acknowledge(3400);
   numbers.accept(33, 3500, Asks::soon, kPatience);
   EXPECT_EQ(numbers.due(), 3500 + 10'000);
 }
 
-/// What is not as the other end may believe is told soon.
+/// What is not as the other end may believe is reported soon.
 TEST(ReceivedNumbers, WhileAllIsWellAnAcknowledgementMayWait) {
   constexpr ReceivedNumbers::Patience patience{10'000, 100'000};
   ReceivedNumbers numbers;
@@ -252,9 +252,9 @@ TEST(ReceivedNumbers, WhileAllIsWellAnAcknowledgementMayWait) {
   accept(7, 28'000);
   numbers.acknowledge(38'000);
   accept(8, 40'000);
-  EXPECT_EQ(numbers.due(), 140'000) << "that 6 is missing was told";
+  EXPECT_EQ(numbers.due(), 140'000) << "that 6 is missing was reported";
   accept(6, 50'000);
-  EXPECT_EQ(numbers.due(), 60'000) << "it was told to be missing, and is not";
+  EXPECT_EQ(numbers.due(), 60'000) << "it was reported missing, and is not";
 }
 
 // ==== session sent fragments ====

@@ -135,11 +135,11 @@ struct PacedLine {
       for (; !arrivals.empty() && arrivals.begin()->first <= now; arrivals.erase(arrivals.begin())) {
         newest = arrivals.begin()->second;
         newest_at = arrivals.begin()->first;
-        ++untold;
+        ++unreported;
         if (answer_at == 0) answer_at = now + 10'000;
       }
       if (answer_at == 0 || now < answer_at + way) continue;
-      tell();
+      report();
     }
   }
   void send() {
@@ -157,14 +157,14 @@ struct PacedLine {
     free_at = now + waits + line;
     arrivals.emplace(free_at + way, number);
   }
-  void tell() {
-    for (; untold > 0; --untold, --on_way, ++came) pace.arrived();
+  void report() {
+    for (; unreported > 0; --unreported, --on_way, ++came) pace.arrived();
     const auto arrived = static_cast<std::int64_t>(newest_at + way);
     const std::int64_t sample = arrived - static_cast<std::int64_t>(sent_at[newest]);
     trip.variation = trip.smoothed == 0 ? sample / 2 : trip.variation + (std::abs(trip.smoothed - sample) - trip.variation) / 4;
     trip.smoothed = trip.smoothed == 0 ? sample : trip.smoothed + (sample - trip.smoothed) / 8;
     trip.least = trip.least == 0 ? sample : std::min(trip.least, sample);
-    pace.told({newest, number, arrived - sample, arrived}, trip, now);
+    pace.feedback({newest, number, arrived - sample, arrived}, trip, now);
     answer_at = 0;
   }
 
@@ -173,7 +173,7 @@ struct PacedLine {
   RoundTrip trip;
   std::map<std::uint64_t, std::uint64_t> arrivals, sent_at;
   std::uint64_t now = 1'000'000, next = now, free_at = 0, answer_at = 0, newest = 0, newest_at = 0, number = 0;
-  std::uint64_t on_way = 0, untold = 0, came = 0, lost = 0, worst = 0;
+  std::uint64_t on_way = 0, unreported = 0, came = 0, lost = 0, worst = 0;
 };
 
 TEST(LinePace, FillsALineAfterARoundTripAndLeavesItsQueueShort) {
@@ -222,7 +222,7 @@ TEST(LinePace, AfterATimeOutFewGoUntilSomethingIsHeard) {
   pace.sent(1, 1'000'000);
   pace.timed_out();
   EXPECT_EQ(pace.window(), 4u);
-  pace.told({1, 1, 1'000'000, 1'900'000}, {900'000, 450'000, 900'000}, 1'910'000);
+  pace.feedback({1, 1, 1'000'000, 1'900'000}, {900'000, 450'000, 900'000}, 1'910'000);
   EXPECT_EQ(pace.window(), 16u);
 }
 
@@ -237,7 +237,7 @@ TEST(LinePace, AcknowledgementsThatLieChangeOnlyTheOwnPace) {
     for (auto i = random() % 60; i > 0; --i) pace.arrived();
     const auto arrived = static_cast<std::int64_t>(now - random() % 1'100'000);
     const auto sample = static_cast<std::int64_t>(random() % 2'000'000);
-    pace.told({number, number + random() % 9, arrived - sample, arrived}, {sample, sample / 2, std::min<std::int64_t>(sample, 7)},
+    pace.feedback({number, number + random() % 9, arrived - sample, arrived}, {sample, sample / 2, std::min<std::int64_t>(sample, 7)},
               now);
     ASSERT_GE(pace.gap(), 80u);
     ASSERT_GE(pace.window(), 4u);

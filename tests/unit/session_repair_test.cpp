@@ -93,7 +93,7 @@ TEST(RepairedExchange, OverALongWayThereAreMoreCopies) {
   }
 }
 
-/// Nothing after the last packet tells that it is lost.
+/// Nothing after the last packet shows that it is lost.
 TEST(RepairedExchange, TheLastPacketBeforeAPauseGoesAgain) {
   RepairedEnds ends;
   ends.lose();

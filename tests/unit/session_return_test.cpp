@@ -178,7 +178,7 @@ TEST(SessionReturn, AWorldThatPausesIsShownAsItGoesOn) {
   }
 }
 
-TEST(SessionReturn, ASeatIsToldUntilItArrives) {
+TEST(SessionReturn, ASeatIsSentUntilItArrives) {
   Visit visit(0.3);
   visit.run(2000);
   ASSERT_EQ(visit.state(), SessionState::live);

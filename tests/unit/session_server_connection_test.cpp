@@ -98,7 +98,7 @@ TEST(ServerConnection, WhoeverKnowsTheEpochGetsThePieces) {
   EXPECT_EQ(desk.connection.next_timeout(), desk.now + 500);
 }
 
-/// By role; and an observer that has fixed a delay too short for copies is told that nothing waits for them.
+/// By role; and an observer that has fixed a delay too short for copies is signalled that nothing waits for them.
 TEST(ServerConnection, ChoosesWhatPacketsBuildOn) {
   struct Case {
     LossPolicy policy;
@@ -113,15 +113,15 @@ TEST(ServerConnection, ChoosesWhatPacketsBuildOn) {
     Desk desk({.loss = of.policy}, 0, of.role);
     ASSERT_TRUE(desk.hear({ReportPart{of.delay, 0}, StatePart{1}}));
     ASSERT_EQ(desk.connection.state(), SessionState::live);
-    bool told = false;
+    bool signalled = false;
     desk.now += 100'000;  // an acknowledgement is due
     for (const Bytes& bytes : desk.drain()) {
       const Datagram said = read_datagram(bytes, Direction::down).value();
       PartReader parts = std::get<Numbered>(said).parts(Direction::down);
       for (auto part = parts.next(); part && *part; part = parts.next())
-        told = told || std::holds_alternative<BaselinesPart>(**part);
+        signalled = signalled || std::holds_alternative<BaselinesPart>(**part);
     }
-    EXPECT_EQ(told, of.acknowledged) << static_cast<int>(of.policy) << " " << static_cast<int>(of.role) << " " << of.delay;
+    EXPECT_EQ(signalled, of.acknowledged) << static_cast<int>(of.policy) << " " << static_cast<int>(of.role) << " " << of.delay;
   }
 }
 
@@ -160,7 +160,7 @@ TEST(ServerConnection, OldDatagramsAreNoFault) {
   EXPECT_FALSE(desk.connection.is_at_fault());
 }
 
-TEST(ServerConnection, ANewEpochIsToldUntilTheClientSpeaksInIt) {
+TEST(ServerConnection, ANewEpochIsSentUntilTheClientSpeaksInIt) {
   Desk desk;
   desk.go_live();
   desk.drain();

@@ -247,7 +247,7 @@ TEST(SessionServer, BoundsWidenWhileTheRateDoesNotCarryThem) {
   EXPECT_GT(rated.widened.widest, 1.9);
   EXPECT_GT(rated.widened.time, 10'000'000u);
   EXPECT_LT(rated.traffic.ticks_held, fixed.traffic.ticks_held / 2);
-  // A bottleneck on the way of which the server is told nothing: it finds its rate.
+  // A bottleneck on the way of which the server knows nothing: it finds its rate.
   const sim::LinkOptions narrow{.delay = 20'000, .rate = static_cast<double>(needed) / 3};
   for (const double most : {1.0, 8.0}) {
     const ClientStatus found = run({.widening = most}, narrow);
@@ -357,7 +357,7 @@ TEST(SessionServer, HostileDatagramsChangeNothing) {
     EXPECT_EQ(world.server->status(0).traffic.packets_refused, before.packets_refused);
   }
   EXPECT_GE(attacks, 1'000'000u);
-  EXPECT_GT(largest, 0u) << "those who ask are told that there is no room";
+  EXPECT_GT(largest, 0u) << "those who ask get a refusal: there is no room";
   for (int i = 0; i < 300; ++i) world.step([&](std::int64_t tick) { return show.at(tick); });
   EXPECT_EQ(world.ends[0].client->status().state, SessionState::live);
   EXPECT_EQ(world.server->status(0).traffic.wrong_states, 0u);
@@ -399,7 +399,7 @@ TEST(SessionServer, NoForceFromStatesThatTheRateHeldBack) {
   Show show;
   SessionWorld world(show.scene, {.sender = {.triggers = {.visual_position = 1e-4}}, .rate = 20'000, .widening = 1});
   SessionClient& client = *world.add({.role = Role::participant}, {.delay = 5'000}, {.delay = 5'000}).client;
-  int old_states = 0, felt = 0;
+  int old_states = 0, rendered = 0;
   for (int i = 0; i < 1500; ++i) {
     const Vec3 place{1e-3 * i, 0, 0};
     ASSERT_TRUE(client.submit(world.now, {.position = place}, DeviceContact{place + Vec3{0, 0, 1e-3}, 500}));
@@ -408,11 +408,11 @@ TEST(SessionServer, NoForceFromStatesThatTheRateHeldBack) {
     const std::int64_t age = world.tick - client.receiver()->tick(0);  // [10 ms]
     old_states += age > 20 ? 1 : 0;
     if (client.force_fraction(world.now) == 0) continue;
-    ++felt;
+    ++rendered;
     EXPECT_LE(age, 12) << i;
   }
   EXPECT_GT(old_states, 100) << "the rate is too high for this test";
-  EXPECT_GT(felt, 100);
+  EXPECT_GT(rendered, 100);
 }
 
 /// Ten objects at 60 Hz with 20 ms of delay; after 5 s one becomes NaN, then falls out of the world, and comes back: who watches the other nine

@@ -171,7 +171,7 @@ TEST(SessionStandstill, NobodyFeelsAPictureOfBefore) {
     EXPECT_LE(ends.frozen(), 100) << of.name();
     EXPECT_EQ(ends.most(), 1) << of.name() << ": all of the force again";
     if (of.clock == Clock::runs) {
-      EXPECT_LE(ends.worst_offset(), 40) << of.name() << ": what waited in the meantime tells nothing";
+      EXPECT_LE(ends.worst_offset(), 40) << of.name() << ": what waited in the meantime says nothing";
     }
     EXPECT_NEAR(static_cast<double>(ends.lag()), static_cast<double>(usual), 60) << of.name();
     ends.run(15'000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Clocks of a session, and when what is shown and felt.
+/// Clocks of a session, and when what is shown and rendered.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -106,7 +106,7 @@ TEST(PlayoutClock, WithoutPacketsThereIsNothingToShow) {
   EXPECT_EQ(clock.shown(1'000'000), 500) << "before its first packet nothing is known";
 }
 
-TEST(PlayoutClock, TellsHowLateATickIsShown) {
+TEST(PlayoutClock, ReportsHowLateATickIsShown) {
   PlayoutClock clock(1000, {.fixed = 20'000});
   EXPECT_FALSE(clock.behind(1'000'000));
   clock.heard(1, 500, 1'000'000);
@@ -255,10 +255,10 @@ TEST(PlayoutClock, ShownNeverFallsWhateverComes) {
 
 // ==== session device pace ====
 
-std::vector<PacePart> told(DevicePace& pace, std::uint64_t number) {
+std::vector<PacePart> sent_in(DevicePace& pace, std::uint64_t number) {
   DatagramWriter writer(Direction::down);
   writer.begin(number);
-  pace.tell(writer, number);
+  pace.send(writer, number);
   if (writer.empty()) return {};
   const auto bytes = writer.finish(7);
   const auto read = read_datagram(bytes, Direction::down).value();
@@ -324,36 +324,36 @@ TEST(DevicePace, WithoutPacketsItStays) {
   for (std::int64_t tick = 1; tick <= 10'000; ++tick) EXPECT_FALSE(pace.step(tick, tick - 50));
 }
 
-TEST(DevicePace, ChangesAreToldUntilTheyAreAcknowledged) {
+TEST(DevicePace, ChangesAreSentUntilTheyAreAcknowledged) {
   DevicePace pace(1000);
   EXPECT_FALSE(pace.waits());
   pace.step(500, 430);
   EXPECT_TRUE(pace.waits());
-  EXPECT_EQ(told(pace, 10).size(), 1u);
+  EXPECT_EQ(sent_in(pace, 10).size(), 1u);
   pace.heard(427);
   pace.step(600, 530);
-  const auto both = told(pace, 11);
+  const auto both = sent_in(pace, 11);
   ASSERT_EQ(both.size(), 2u);
   EXPECT_EQ(both[0].from, 500);
   EXPECT_EQ(both[1].from, 600);
   pace.acknowledged(9);
-  EXPECT_EQ(told(pace, 12).size(), 2u);
+  EXPECT_EQ(sent_in(pace, 12).size(), 2u);
   pace.acknowledged(10);
-  EXPECT_EQ(told(pace, 13).size(), 1u);
+  EXPECT_EQ(sent_in(pace, 13).size(), 1u);
   pace.acknowledged(11);
   EXPECT_FALSE(pace.waits());
-  EXPECT_TRUE(told(pace, 14).empty());
+  EXPECT_TRUE(sent_in(pace, 14).empty());
 }
 
-/// More changes than are kept: the newest are told.
-TEST(DevicePace, TheNewestChangesAreTold) {
+/// More changes than are kept: the newest are sent.
+TEST(DevicePace, TheNewestChangesAreSent) {
   DevicePace pace(1000);
   pace.step(0, 0);
   for (std::int64_t tick = 1; tick < 20; ++tick) {
     pace.heard(-100 * tick);
     pace.step(tick, tick);
   }
-  const auto all = told(pace, 3);
+  const auto all = sent_in(pace, 3);
   ASSERT_EQ(all.size(), 8u);
   EXPECT_EQ(all.back().from, 19);
   EXPECT_EQ(all.front().from, 12);
@@ -380,7 +380,7 @@ TEST(ForceFade, FallsFrom70To100MillisecondsWithoutNews) {
   for (const std::uint64_t age : {101u, 1000u, 1'000'000u}) EXPECT_EQ(fade.fraction(kStart + age * kMillisecond, kStart), 0);
 }
 
-/// A client that works out what its device does waits longer for news.
+/// A client that computes what its device does waits longer for news.
 TEST(ForceFade, FallsFrom300To400MillisecondsInADrivenScene) {
   ForceFade fade = risen();
   fade.set_limits(ForceFade::kDriven);

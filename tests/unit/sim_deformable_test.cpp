@@ -244,7 +244,7 @@ TEST(DeformableSimulation, DivergenceIsAnErrorWithARemedy) {
   FAIL() << "it did not diverge";
 }
 
-TEST(DeformableSimulation, TellsMethodReasonAndError) {
+TEST(DeformableSimulation, ReportsMethodReasonAndError) {
   const Scene scene = shipped("membrane");
   auto simulation = Simulation::create(scene, {.seed = 1, .grip = {}, .channel = {}, .estimate_every = 10});
   ASSERT_TRUE(simulation);
@@ -305,7 +305,7 @@ double force_difference(double visual) {
 
 TEST(DeformableSimulation, ClientFeelsTheDecodedShape) {
   const double fine = force_difference(1e-6), coarse = force_difference(2e-3);
-  EXPECT_GT(coarse, 2 * fine) << "a coarser shape must be felt";
+  EXPECT_GT(coarse, 2 * fine) << "a coarser shape must show in the force";
 }
 
 // ==== sim deformable rest ====
@@ -472,7 +472,7 @@ TEST(DeformableRest, ReportsShapesWhileItMovesOrIsTouched) {
 }
 
 /// A slab that falls 1.3 m, 5 mm in a tick, onto a probe that keeps still.
-TEST(DeformableRest, AFastSlabIsFelt) {
+TEST(DeformableRest, AFastSlabIsRendered) {
   for (const double height : {0.3, 1.3, 20.0}) {
     auto scene = parse_scene(
                      "name = \"drop\"\nduration = 3.0\ngravity = [0, 0, -9.81]\n"

@@ -135,14 +135,14 @@ TEST(Scene, CompensationIsThereWhenAskedFor) {
   EXPECT_EQ(usual.compensation->method, CompensationMethod::stiffness);
   const Scene simulated = parse_scene(kHead + "[compensation]\nmethod = \"simulation\"\n" + kCube, "test").value();
   EXPECT_EQ(simulated.compensation->method, CompensationMethod::simulation);
-  EXPECT_FALSE(tells_loads(usual)) << "nobody is there who could push";
+  EXPECT_FALSE(sends_loads(usual)) << "nobody is there who could push";
   const Scene asked =
       parse_scene(kHead + "[compensation]\nfilter = 0.5\n" + kCube + kTouch + "lift_stiffness = 68\nmax_damping = 20\n" + kUser,
                   "test")
           .value();
   EXPECT_EQ(asked.compensation->filter, 0.5);
   EXPECT_EQ(asked.touch->max_damping, 20);
-  EXPECT_TRUE(tells_loads(asked));
+  EXPECT_TRUE(sends_loads(asked));
 }
 
 TEST(Scene, PaceAndTremorAreThoseOfEveryHand) {

@@ -116,7 +116,7 @@ std::pair<double, double> pressed(const SceneDeformable& object, const SurfaceCo
   return {1 / unit.dot(Eigen::MatrixXd(K).inverse() * unit), 1 / inverse_mass};
 }
 
-/// At a low rate an object bears little more than its own stiffness at that place; at a high one, four times the mass over T^2.
+/// At a low rate an object tolerates little more than its own stiffness at that place; at a high one, four times the mass over T^2.
 TEST(CriticalStiffness, IsThatOfEquation438WhereTheObjectIsPressed) {
   SceneDeformable object = slab(4, 3);
   const StiffnessMap map = stiffness_map(object).value();

@@ -127,7 +127,7 @@ TEST(Stability, ClientOfFigure417) {
   for (const std::size_t i : {0u, 2u, 3u}) EXPECT_GT(energy(i), -1e-3) << i;
   EXPECT_LT(energy(4), 0) << "slightly active, says the thesis";
   EXPECT_GT(energy(4), -1);
-  EXPECT_LT(*study.rows[6].measured, *study.rows[7].measured) << "damping at the client bears a longer delay";
+  EXPECT_LT(*study.rows[6].measured, *study.rows[7].measured) << "damping at the client tolerates a longer delay";
 }
 
 // ==== study signals ====
@@ -218,7 +218,7 @@ std::vector<DelayEffect> effects(const Scene& scene, const DelayCase& one, const
   return out;
 }
 
-TEST(DelayStudy, TheRoundTripThatAClientTellsIsThatOfTheNetwork) {
+TEST(DelayStudy, TheRoundTripThatAClientReportsIsThatOfTheNetwork) {
   const DelayRun run = run_delayed(scene("push-cube"), {.link = delayed(80'000)}).value();
   for (std::size_t i = 2000; i < run.users[0].size(); ++i) ASSERT_NEAR(run.users[0][i].round_trip, 0.080, 0.002) << i;
 }
@@ -271,7 +271,7 @@ double seen_away(const DelayRun& run, const DelayRun& reference) {
   return away.empty() ? 0 : away[away.size() * 99 / 100];
 }
 
-TEST(DelayStudy, WhatAClientSimulatesIsFeltAndSeenAtOnce) {
+TEST(DelayStudy, WhatAClientSimulatesIsRenderedAndSeenAtOnce) {
   const Scene cube = scene("push-cube");
   const DelayRun reference = run_delayed(cube, {.is_local = true}).value();
   for (const Microseconds round_trip : {100'000, 300'000}) {
@@ -283,7 +283,7 @@ TEST(DelayStudy, WhatAClientSimulatesIsFeltAndSeenAtOnce) {
   }
 }
 
-TEST(DelayStudy, AOneDimensionalObjectThatAClientSimulatesIsFeltAndSeenAtOnce) {
+TEST(DelayStudy, AOneDimensionalObjectThatAClientSimulatesIsRenderedAndSeenAtOnce) {
   Scene msd = scene("msd-1d");
   msd.users.resize(1);
   const DelayRun reference = run_delayed(msd, {.is_local = true}).value();
@@ -295,7 +295,7 @@ TEST(DelayStudy, AOneDimensionalObjectThatAClientSimulatesIsFeltAndSeenAtOnce) {
 }
 
 #ifdef TACTUS_WITH_FEM
-TEST(DelayStudy, AMembraneThatAClientSimulatesIsFeltAndSeenAtOnce) {
+TEST(DelayStudy, AMembraneThatAClientSimulatesIsRenderedAndSeenAtOnce) {
   Scene membrane = scene("membrane-small");
   membrane.duration = 3;
   const DelayRun reference = run_delayed(membrane, {.is_local = true}).value();

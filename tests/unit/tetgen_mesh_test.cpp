@@ -127,7 +127,7 @@ TEST(TetGen, BrokenMeshesAndOptionsAreRefused) {
   expect_broken(fill(mesh, {}), "R-SRF-8", "vertex 3");
 }
 
-TEST(TetGen, MissingFailingAndHangingProgramsAreTold) {
+TEST(TetGen, MissingFailingAndHangingProgramsAreReported) {
   const TempFolder folder;
   const TriMesh mesh = surface(make_slab(1, 1, 1, 1)).mesh;
   const auto program = [&](std::string_view name, std::string_view text) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run was like at a hand, and what a hand bears: sim/user/passivity.h, sim/user/passivity.h.
+// What a run was like at a hand, and what a hand tolerates: sim/user/passivity.h, sim/user/passivity.h.
 #include <tactus/sim/user/passivity.h>
 
 #include <gtest/gtest.h>
@@ -106,11 +106,11 @@ double strays(Grip grip, SceneDevice device, double stiffness) {
   SceneUser user;
   user.device = device;
   Hand hand(user, grip, 1);
-  Vec3 felt{0, 0, 1};
+  Vec3 rendered{0, 0, 1};
   double early = 0, late = 0;  // the second quarter and the last one
   const int ticks = 6000 + 400 * static_cast<int>(device.filter);
   for (int tick = 0; tick < ticks; ++tick) {
-    felt = -stiffness * hand.step(felt, {}).position;
+    rendered = -stiffness * hand.step(rendered, {}).position;
     const double away = norm(hand.position());
     if (tick >= ticks / 4 && tick < ticks / 2) early = std::max(early, away);
     if (tick >= ticks - ticks / 4) late = std::max(late, away);

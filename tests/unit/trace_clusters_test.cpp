@@ -89,7 +89,7 @@ TEST(TraceClusters, OfABodyThatWalksTakeHalfOfItsBits) {
   EXPECT_LT(2 * coded(rest, clusters), coded(rest, {}));
 }
 
-TEST(TraceClusters, TellWhatIsWrong) {
+TEST(TraceClusters, ReportWhatIsWrong) {
   const TriMesh rest = testing::sheet(2, 2);
   const TempFile file;
   record(rest, file.path());

@@ -231,7 +231,7 @@ void put_word(Bytes& message, std::size_t word, std::uint32_t value) {
   for (std::size_t i = 0; i < 4; ++i) message.at(4 + 4 * word + i) = static_cast<std::uint8_t>(value >> (8 * i));
 }
 
-TEST(MeshTrace, ReaderTellsEachKindOfWrongMessage) {
+TEST(MeshTrace, ReaderReportsEachKindOfWrongMessage) {
   const auto rule = [](auto change) {
     Forgery forgery;
     change(forgery);

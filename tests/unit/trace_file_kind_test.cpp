@@ -50,7 +50,7 @@ TEST(TraceFileKind, KnownKindsAreNamedWithTheirCommand) {
   EXPECT_TRUE(kind("\x01\x02\x03\xf0").cause.empty());
 }
 
-/// What is told may be copied into a shell.
+/// What is printed may be copied into a shell.
 TEST(TraceFileKind, ANameThatAShellWouldReadDoesNotStandInACommand) {
   const auto remedy = [](std::string_view first, const std::string& path) {
     return not_mcap(std::span(reinterpret_cast<const std::uint8_t*>(first.data()), first.size()), path).remedy;

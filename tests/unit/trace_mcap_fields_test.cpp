@@ -17,8 +17,8 @@ using Bytes = std::vector<std::uint8_t>;
 const std::map<std::string, std::string> kIgnored{
     {"header.profile", "a hint for tools; the channels say what they carry"},
     {"header.library", "who wrote the file changes no number"},
-    {"chunk.message_start_time", "an index: the messages have their own times; told when the chunk is damaged"},
-    {"chunk.message_end_time", "an index: the messages have their own times; told when the chunk is damaged"},
+    {"chunk.message_start_time", "an index: the messages have their own times; reported when the chunk is damaged"},
+    {"chunk.message_end_time", "an index: the messages have their own times; reported when the chunk is damaged"},
     {"message_index.channel_id", "an index: the file is read front to back"},
     {"message_index.records", "an index: the file is read front to back"},
     {"chunk_index.content", "an index: the file is read front to back"},

@@ -81,9 +81,9 @@ TEST(TraceReplica, AWriterRefusesAClientThatStepsBack) {
   }
 }
 
-TEST(TraceReplica, AForceThatNobodyToldIsMarked) {
+TEST(TraceReplica, AForceThatIsNotKnownIsMarked) {
   Recording recording = make_recording(3);
-  for (const KnownForces left : {KnownForces::both, KnownForces::felt, KnownForces::server}) {
+  for (const KnownForces left : {KnownForces::both, KnownForces::rendered, KnownForces::server}) {
     recording.info.users[0].forces = left;
     const TempFile file;
     const auto reader = TraceReader::open_memory(write_recording(recording, file.path()));
@@ -94,12 +94,12 @@ TEST(TraceReplica, AForceThatNobodyToldIsMarked) {
 }
 
 /// A user of whose two forces the channels say this.
-std::string rule_of_forces(const char* felt, const char* server) {
+std::string rule_of_forces(const char* rendered, const char* server) {
   const TempFile file;
   auto out = mcap::Writer::create(file.path(), "ros2").value();
   EXPECT_TRUE(out.add(mcap::Metadata{"tactus", {{"format_version", "2"}, {"tick_rate", "1000"}, {"users", "hand"}}}));
   const std::tuple<const char*, MessageType, const char*> channels[]{{"/users/hand/device", MessageType::point, ""},
-                                                                     {"/users/hand/force", MessageType::vector, felt},
+                                                                     {"/users/hand/force", MessageType::vector, rendered},
                                                                      {"/users/hand/server_force", MessageType::vector, server},
                                                                      {"/users/hand/contact", MessageType::contact, ""}};
   std::uint16_t id = 0;

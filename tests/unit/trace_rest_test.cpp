@@ -42,8 +42,8 @@ TEST(Trace, AnObjectThatRestsIsWrittenOnce) {
   EXPECT_EQ(count[object + "/twist"], changes);
 }
 
-/// Who tells what changed gets the same file; who leaves ticks out, too.
-TEST(Trace, WhatIsToldToHaveChangedIsAllThatIsLookedAt) {
+/// Who marks what changed gets the same file; who leaves ticks out, too.
+TEST(Trace, WhatIsMarkedAsChangedIsAllThatIsLookedAt) {
   for (const std::int64_t stride : {1, 3}) {
     Recording recording = make_recording(60);
     for (std::size_t i = 1; i < recording.frames.size(); ++i) {
@@ -51,25 +51,25 @@ TEST(Trace, WhatIsToldToHaveChangedIsAllThatIsLookedAt) {
       const bool moves = i % 4 == 1;
       if (!moves) frame.objects = recording.frames[i - 1].objects;
     }
-    Recording told{recording.info, {}}, silent = told;
+    Recording marked{recording.info, {}}, silent = marked;
     for (std::size_t i = 0; i < recording.frames.size(); i += static_cast<std::size_t>(stride)) {
       silent.frames.push_back(recording.frames[i]);
-      told.frames.push_back(recording.frames[i]);
-      told.frames.back().changed.emplace();
-      for (std::uint32_t k = 0; k < recording.info.objects.size() && i % 4 == 1; ++k) told.frames.back().changed->push_back(k);
+      marked.frames.push_back(recording.frames[i]);
+      marked.frames.back().changed.emplace();
+      for (std::uint32_t k = 0; k < recording.info.objects.size() && i % 4 == 1; ++k) marked.frames.back().changed->push_back(k);
     }
     const TempFile first, second;
-    EXPECT_EQ(write_recording(told, first.path()), write_recording(silent, second.path())) << stride;
+    EXPECT_EQ(write_recording(marked, first.path()), write_recording(silent, second.path())) << stride;
   }
 }
 
 /// A number that no object has does no harm.
 TEST(Trace, AnUnknownObjectThatChangedIsIgnored) {
   Recording recording = make_recording(4);
-  Recording told = recording;
-  for (TraceFrame& frame : told.frames) frame.changed = {{0, 1, 2, 3, 4, 5, 6, 7, 100, 0xffffffff}};
+  Recording marked = recording;
+  for (TraceFrame& frame : marked.frames) frame.changed = {{0, 1, 2, 3, 4, 5, 6, 7, 100, 0xffffffff}};
   const TempFile first, second;
-  EXPECT_EQ(write_recording(told, first.path()), write_recording(recording, second.path()));
+  EXPECT_EQ(write_recording(marked, first.path()), write_recording(recording, second.path()));
 }
 
 }  // namespace

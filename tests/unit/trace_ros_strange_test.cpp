@@ -26,7 +26,7 @@ TEST(TraceRosStrange, BurstsWithoutStampsAreSpreadEvenly) {
   }
 }
 
-TEST(TraceRosStrange, ClocksOfDifferentLengthAreTold) {
+TEST(TraceRosStrange, ClocksOfDifferentLengthAreReported) {
   RosBag bag;  // stamps of a clock that is 5 % slow
   for (int i = 0; i < 200; ++i)
     bag.add(10 * i, "/tool/pose", kPoseSchema, stamped_pose(9.5 * i, "world", {{0.001 * i, 0, 0}, {}}));
@@ -118,8 +118,8 @@ TEST(TraceRosStrange, AStaticTransformThatChangesIsFollowed) {
   }
   auto reader = bag.open();
   ASSERT_TRUE(reader);
-  EXPECT_TRUE(has(reader->notes(), "frame base of /tf_static", "is told at 1.000 s; it holds from the beginning"));
-  EXPECT_TRUE(has(reader->notes(), "frame base of /tf_static", "is told to have changed; it jumps then"));
+  EXPECT_TRUE(has(reader->notes(), "frame base of /tf_static", "is published at 1.000 s; it holds from the beginning"));
+  EXPECT_TRUE(has(reader->notes(), "frame base of /tf_static", "is published with another value; it jumps then"));
   const Reading reading = read_all(std::move(reader));
   ASSERT_EQ(reading.frames.size(), 400u);
   for (std::size_t i = 0; i < 400; ++i) {
@@ -142,7 +142,7 @@ TEST(TraceRosStrange, AVelocityThatIsLeftAtZeroIsNone) {
   }
 }
 
-TEST(TraceRosStrange, WhereNoVelocityIsToldItFollowsFromThePoses) {
+TEST(TraceRosStrange, WhereNoVelocityIsPublishedItFollowsFromThePoses) {
   Bytes twist;
   encode_twist(twist, 0, {{3, 0, 0}, {}});
   RosBag bag;
@@ -174,7 +174,7 @@ TEST(TraceRosStrange, PrefixesOfFramesAreFound) {
   for (const std::size_t i : {0u, 1u}) expect_near(reading.frames[5].objects[i].pose.position, {1, 0.5, 0});
 }
 
-TEST(TraceRosStrange, TwoPublishersOfOnePoseAreTold) {
+TEST(TraceRosStrange, TwoPublishersOfOnePoseAreReported) {
   RosBag bag;
   for (int i = 0; i < 100; ++i) bag.add(5 * i, "/tool/pose", kPoseSchema, along_x(0.001 * i + (i % 2)));
   const Notes notes = bag.notes();
@@ -290,8 +290,8 @@ TEST(TraceRosStrange, OptionsOfReading) {
   expect_near(at_1000.frames[555].objects[0].velocity, {0.1, 0, 0}, 1e-6);
 }
 
-/// An error of next() is told with the topic and the time.
-/// As of a computer that began in 1970 and was told the time while it recorded.
+/// An error of next() is reported with the topic and the time.
+/// As of a computer that began in 1970 and got the time while it recorded.
 TEST(TraceRosStrange, AClockThatWasSetForwardGoesOnThere) {
   RosBag bag, same;
   for (RosBag* one : {&bag, &same})
@@ -306,7 +306,7 @@ TEST(TraceRosStrange, AClockThatWasSetForwardGoesOnThere) {
   EXPECT_NEAR(reading.frames.back().objects[0].pose.position.x, 0.039, 1e-7);
 }
 
-TEST(TraceRosStrange, ATimeBehindAllOthersIsTold) {
+TEST(TraceRosStrange, ATimeBehindAllOthersIsReported) {
   RosBag bag;
   for (int i = 0; i < 120; ++i)  // from the twentieth on they are 0.9 years apart, as longer leaps are of the clock
     bag.add(10 * i + 2.8e10 * std::max(0, i - 20), "/tool/pose", kPoseSchema, along_x(0.001 * i));
@@ -317,9 +317,9 @@ TEST(TraceRosStrange, ATimeBehindAllOthersIsTold) {
   while (more && *more) more = reader->next(frame);
   ASSERT_FALSE(more);
   EXPECT_EQ(more.error().rule, std::string_view("R-TRC-15"));
-  const Diagnostic told = reader->explain(more.error());
-  EXPECT_EQ(told.detail, "/tool/pose, at 2156000000 s");
-  EXPECT_EQ(told.cause, "times go on to more than the 2^31 s that a trace holds");
+  const Diagnostic reported = reader->explain(more.error());
+  EXPECT_EQ(reported.detail, "/tool/pose, at 2156000000 s");
+  EXPECT_EQ(reported.cause, "times go on to more than the 2^31 s that a trace holds");
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST(TraceRos, AForceActsWhereItsFrameIs) {
   for (int i = 1; i < 4; ++i) {
     const UserSample& user = reading.frames[static_cast<std::size_t>(i)].users[0];
     expect_near(user.device.position, {0.1 * i, 0, 0});
-    expect_near(user.force, {0, i + 0.9, 0});  // told 0.1 ms after the tick before, and 0.1 ms after this one
+    expect_near(user.force, {0, i + 0.9, 0});  // published 0.1 ms after the tick before, and 0.1 ms after this one
     expect_near(user.server_force, user.force);
   }
 }
@@ -96,7 +96,7 @@ TEST(TraceRos, ForcesAloneAreARecording) {
   expect_near(reading.frames[9].users[0].force, {0, 0, 4.5});
 }
 
-TEST(TraceRos, TreesThatChangeOrLoopAreFollowedOrToldOf) {
+TEST(TraceRos, TreesThatChangeOrLoopAreFollowedOrReported) {
   const Pose there{{1, 0, 0}, {}};
   EXPECT_EQ(RosBag().tf(0, {{"a", "b", there}}).tf(1, {{"a", "b", there}}).notes(), (Notes{{"", "frame 'a' is the world"}}));
   RosBag moved;
@@ -235,7 +235,7 @@ TEST(TraceRos, StampsAreTheClockWhereLogTimesComeInBursts) {
   for (const TraceFrame& frame : reading.frames) expect_near(frame.objects[0].velocity, {1, 0, 0}, 1e-6);
 }
 
-/// A frame of 25 Hz that turns and carries a hand, beside forces of 1 kHz: at each tick all move as they are told between samples.
+/// A frame of 25 Hz that turns and carries a hand, beside forces of 1 kHz: at each tick all move as they are interpolated between samples.
 TEST(TraceRos, WhatComesSeldomMovesSmoothly) {
   RosBag bag;
   const auto angle = [](double t) { return 0.5 * std::sin(2 * t); };

@@ -86,7 +86,7 @@ TEST(TraceScene, TakesFirstPosesAtRest) {
   EXPECT_FALSE(scene->bounds);
 }
 
-TEST(TraceScene, DeclaresWhatTheSenderIsTold) {
+TEST(TraceScene, DeclaresWhatTheSenderIsGiven) {
   SheetTrace trace;
   trace.move(0);
   const SenderOptions sender{.triggers = {.visual_position = 0.01}, .deformable = {.thresholds = {.visual = 1e-3}}};

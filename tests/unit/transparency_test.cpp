@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How transparent what is felt is.
+/// How transparent what is rendered is.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -167,7 +167,7 @@ TEST(DeformableTransparency, AtTheTolerableDelayTheSlowImpedanceIsTheFractionAbo
   for (const double hertz : {0.2, 0.5, 1.0, 3.0})
     for (const double weber : {0.05, 0.1, 0.25}) {
       const auto delay = tolerable_delay(kObject, omega(hertz), weber);
-      if (!delay) continue;  // the damper alone is felt
+      if (!delay) continue;  // the damper alone is rendered
       const double wanted = 340 * (1 - follows_slowly(kObject)) / omega(hertz);
       EXPECT_NEAR(std::abs(slow_client_impedance(kObject, omega(hertz), *delay)), (1 + weber) * wanted, 1e-9 * wanted);
     }
@@ -183,7 +183,7 @@ TEST(DeformableTransparency, TheReducedStiffnessRestoresTheSlowImpedance) {
   EXPECT_EQ(reduced_stiffness_undamped(kObject, omega(1), 0), 340);
 }
 
-TEST(DeformableTransparency, DampingThatIsFeltByItselfLeavesNoTolerableDelay) {
+TEST(DeformableTransparency, DampingThatIsRenderedByItselfLeavesNoTolerableDelay) {
   DeformableCoupling damped = kObject;
   damped.client_damping = 100;
   EXPECT_FALSE(tolerable_delay(damped, omega(2), 0.1));
@@ -210,7 +210,7 @@ Pressing one_user(std::uint32_t round_trip) {
 }
 
 double peak(const std::vector<double>& force) { return *std::ranges::max_element(force); }
-double peak_felt(const Pressing& pressing) { return peak(press(pressing)->front().client); }
+double peak_rendered(const Pressing& pressing) { return peak(press(pressing)->front().client); }
 
 TEST(PressedObject, AHandGoesInHoldsAndComesOut) {
   const std::vector<Press> presses{{1, 2, 3, 0.02}};
@@ -228,23 +228,23 @@ TEST(PressedObject, WhoHoldsStillFeelsBothSpringsWhateverTheDelay) {
     for (const std::optional<double> compensation : {std::optional<double>(), std::optional(0.01)}) {
       Pressing pressing = one_user(round_trip);
       pressing.compensation = compensation;
-      const auto felt = press(pressing);
-      ASSERT_TRUE(felt);
-      EXPECT_NEAR(felt->front().client[1490], 340 * 100 / 440.0 * 0.03, 0.002) << round_trip;
-      EXPECT_NEAR(felt->front().server[1490], 340 * 100 / 440.0 * 0.03, 0.002) << round_trip;
-      EXPECT_EQ(felt->front().client[2400], 0);
+      const auto forces = press(pressing);
+      ASSERT_TRUE(forces);
+      EXPECT_NEAR(forces->front().client[1490], 340 * 100 / 440.0 * 0.03, 0.002) << round_trip;
+      EXPECT_NEAR(forces->front().server[1490], 340 * 100 / 440.0 * 0.03, 0.002) << round_trip;
+      EXPECT_EQ(forces->front().client[2400], 0);
     }
 }
 
-/// Equation 4.39, whose approximation 4.45 tells 37.5 ms for 10 %; here a tick passes until the object gives way (T_c of figure 4.14).
-TEST(PressedObject, DelayRaisesThePeakAsTheTransferFunctionsTell) {
+/// Equation 4.39, whose approximation 4.45 gives 37.5 ms for 10 %; here a tick passes until the object gives way (T_c of figure 4.14).
+TEST(PressedObject, DelayRaisesThePeakAsTheTransferFunctionsPredict) {
   const DeformableCoupling coupling{100, 2, 0.1, 340, 5, 340};
   const double omega = std::numbers::pi;  // 0.5 Hz
   const double reference = peak(press(one_user(0))->front().server);
   for (const std::uint32_t round_trip : {10U, 37U, 50U, 75U}) {
-    const double told =
+    const double expected =
         std::abs(client_impedance(coupling, omega, 1e-3 * (round_trip + 1))) / std::abs(server_impedance(coupling, omega));
-    EXPECT_NEAR(peak_felt(one_user(round_trip)) / reference, told, 0.015) << round_trip;
+    EXPECT_NEAR(peak_rendered(one_user(round_trip)) / reference, expected, 0.015) << round_trip;
   }
 }
 
@@ -252,10 +252,10 @@ TEST(PressedObject, CompensationTakesThePeakAway) {
   const double reference = peak(press(one_user(0))->front().server);
   for (const std::uint32_t round_trip : {50U, 75U, 100U, 150U}) {
     Pressing pressing = one_user(round_trip);
-    EXPECT_GT(peak_felt(pressing), 1.15 * reference) << round_trip;
+    EXPECT_GT(peak_rendered(pressing), 1.15 * reference) << round_trip;
     for (const double filter : {1.0, 0.1, 0.01}) {
       pressing.compensation = filter;
-      EXPECT_NEAR(peak_felt(pressing) / reference, 1, 0.01) << round_trip << ", " << filter;
+      EXPECT_NEAR(peak_rendered(pressing) / reference, 1, 0.01) << round_trip << ", " << filter;
     }
   }
 }
@@ -301,10 +301,10 @@ TEST(PressedObject, WhoOnlyHoldsFeelsNoMoreWhenAnotherPresses) {
   pressing.duration = 4;
   pressing.users[0].presses = {{0.2, 0.7, 3.5, 0.03}};
   pressing.users.push_back({{{1.5, 2, 3, 0.03}}, 30, 30});
-  const auto felt = press(pressing);
-  ASSERT_TRUE(felt);
-  const auto alone = felt->front().client[1490];
-  for (std::size_t tick = 1600; tick < 2900; ++tick) EXPECT_LE(felt->front().client[tick], alone + 1e-6) << tick;
+  const auto forces = press(pressing);
+  ASSERT_TRUE(forces);
+  const auto alone = forces->front().client[1490];
+  for (std::size_t tick = 1600; tick < 2900; ++tick) EXPECT_LE(forces->front().client[tick], alone + 1e-6) << tick;
 }
 
 TEST(PressedObject, WhatItCannotTakeIsRefused) {

@@ -72,7 +72,7 @@ TEST(Viewer, TheGhostIsWithinATwentiethOfTheBounds) {
   EXPECT_GE(ghost_bounds(**fine).rigid.visual_position, 4e-6);  // the grid can hold it
 }
 
-/// What the page is told of a user whose hand feels nothing while the server renders so much.
+/// What the page is sent of a user to whom nothing is rendered while the server renders so much.
 nlohmann::ordered_json user_of(KnownForces known, double server) {
   TraceInfo info{.objects = {{"cube"}}, .users = {{.name = "hand", .forces = known}}, .source = {}, .scene = {}};
   TraceFrame frame{.objects = {{}}, .users = {{}}};
@@ -84,16 +84,16 @@ nlohmann::ordered_json user_of(KnownForces known, double server) {
   return truth->take()["users"][0];
 }
 
-TEST(Viewer, ThePageIsToldWhichForcesAreKnown) {
+TEST(Viewer, ThePageIsSentWhichForcesAreKnown) {
   EXPECT_EQ(user_of(KnownForces::both, 0)["knows"], "both");
-  EXPECT_FALSE(user_of(KnownForces::both, 0).contains("felt"));
-  EXPECT_TRUE(user_of(KnownForces::both, 1).contains("felt"));
+  EXPECT_FALSE(user_of(KnownForces::both, 0).contains("rendered"));
+  EXPECT_TRUE(user_of(KnownForces::both, 1).contains("rendered"));
   EXPECT_EQ(user_of(KnownForces::server, 1)["knows"], "server");
-  EXPECT_FALSE(user_of(KnownForces::server, 1).contains("felt"));
+  EXPECT_FALSE(user_of(KnownForces::server, 1).contains("rendered"));
   EXPECT_TRUE(user_of(KnownForces::server, 1).contains("server"));
-  EXPECT_EQ(user_of(KnownForces::felt, 0)["knows"], "felt");
-  EXPECT_FALSE(user_of(KnownForces::felt, 0).contains("server"));
-  EXPECT_TRUE(user_of(KnownForces::felt, 0).contains("felt"));
+  EXPECT_EQ(user_of(KnownForces::rendered, 0)["knows"], "rendered");
+  EXPECT_FALSE(user_of(KnownForces::rendered, 0).contains("server"));
+  EXPECT_TRUE(user_of(KnownForces::rendered, 0).contains("rendered"));
 }
 
 }  // namespace

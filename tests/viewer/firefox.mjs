@@ -9,7 +9,7 @@ import {join} from "node:path";
 const patience = 60000;  // ms: against a browser that hangs
 const codes = {Home: "\uE011", End: "\uE010", ArrowRight: "\uE014", Shift: "\uE008"};  // WebDriver, section 15.4.2
 const settings = {
-  "marionette.port": 0,  // any: it is told in a file
+  "marionette.port": 0,  // any: it is written to a file
   "webgl.force-enabled": true, "webgl.disable-fail-if-major-performance-caveat": true,  // with a software renderer
   "dom.max_script_run_time": 0,
   "app.normandy.enabled": false, "app.update.auto": false, "browser.shell.checkDefaultBrowser": false,
@@ -140,7 +140,7 @@ class Tab {
     return this.browser.callIn(this.handle, command, params);
   }
 
-  // It has global names of its own behind those of the page, so that it is told whose to set.
+  // It has global names of its own behind those of the page, so that it is given whose to set.
   async run(expression) {
     const script = `return ((globalThis) => (${expression}))(window);`;
     const {value} = await this.call("WebDriver:ExecuteScript", {script, args: []});

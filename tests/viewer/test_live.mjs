@@ -70,8 +70,8 @@ const tests = {
     assert.equal(after.follows, true);
     assert.equal(after.time, after.duration);
     assert.equal((await checked(tab)).isEqual, true);
-    // What the server tells, against what the page decodes; and the check can fail, for as long as a slow page takes to draw it.
-    const told = await tab.run(`new Promise((done) => {
+    // What the server sends, against what the page decodes; and the check can fail, for as long as a slow page takes to draw it.
+    const received = await tab.run(`new Promise((done) => {
       const {model} = tactusView.page;
       const append = model.append.bind(model);
       model.append = (batch, follows) => {
@@ -81,9 +81,9 @@ const tests = {
         if (hashes) done({hashes, own: model.replay.stateHashes(), tick: model.replay.tick, last: batch.last_tick, checked: model.checked});
       };
     })`);
-    assert.deepEqual(told.own, told.hashes);
-    assert.equal(told.tick, told.last);
-    assert.equal(told.checked.isEqual, false);
+    assert.deepEqual(received.own, received.hashes);
+    assert.equal(received.tick, received.last);
+    assert.equal(received.checked.isEqual, false);
     await tab.until("[...document.querySelectorAll('#readings tr.over')].some(({textContent}) => /NOT equal/.test(textContent))");
     await tab.run("delete tactusView.page.model.append");
     await tab.until("tactusView.page.model.checked.isEqual");

@@ -129,7 +129,7 @@ const tests = {
   async "colours of the error are within what was measured"(browser) {
     const tab = await ready(browser, "membrane.html");
     for (let i = 0; i < 2; ++i) await tab.key("v");
-    assert.equal(await tab.run("tactusView.page.picture.colouring.name"), "displacement");  // the stream tells no stiffness
+    assert.equal(await tab.run("tactusView.page.picture.colouring.name"), "displacement");  // the stream declares no stiffness
     await tab.key("v");
     const off = await tab.run(`(() => {
       const {picture, model} = tactusView.page;
@@ -224,8 +224,8 @@ const tests = {
     run("serve", "push-1dof", "--listen", "0", "--duration", "300ms", "-o", "served.mcap", "-f", "-q");
     assert.deepEqual(await named("served"), [["force of the server [N]"], ["force of the server"]]);
     run("sim", "push-1dof", "--duration", "300ms", "-o", "played.mcap", "-f", "-q");
-    assert.deepEqual(await named("played"), [["force felt [N]"], ["force felt"]]);
-    assert.deepEqual(await named("membrane"), [["force felt [N]"], ["force of the server", "force felt"]]);
+    assert.deepEqual(await named("played"), [["rendered force [N]"], ["rendered force"]]);
+    assert.deepEqual(await named("membrane"), [["rendered force [N]"], ["force of the server", "rendered force"]]);
   },
 
   async "odd streams"(browser) {

@@ -40,13 +40,13 @@ export function expand(bytes, repeat) {
   return out;
 }
 
-// What of the declaration the interface tells.
+// What of the declaration the interface returns.
 function headerOf(scene) {
   const header = {tick_rate: scene.tickRate, objects: scene.rigid.map(({name, dof}) => ({name, dof}))};
   if (scene.deformables.length > 0) {
     header.meshes = scene.deformables.map(({name, profile, vertices, triangles, modes}, i) => {
       const mesh = {name, profile: profile === "main" ? 1 : 0, vertices, triangles, modes};
-      if (scene.stiffness(i) !== null) mesh.stiffness = "told";
+      if (scene.stiffness(i) !== null) mesh.stiffness = "declared";
       return mesh;
     });
   }
@@ -114,7 +114,7 @@ export function check(tactus, {bytes, expected, args = [], repeat}) {
   for (let i = 0; i < lines.length; ++i) {
     const [kind] = Object.keys(lines[i]);
     if (!(kind in expected[i])) return `line ${i} is a ${kind}`;
-    for (const mesh of expected[i].header?.meshes ?? []) if (mesh.stiffness) mesh.stiffness = "told";
+    for (const mesh of expected[i].header?.meshes ?? []) if (mesh.stiffness) mesh.stiffness = "declared";
     const [made, wanted] = kind === "packet" ? [lines[i], expected[i]] : [lines[i][kind], expected[i][kind]];
     for (const [name, value] of Object.entries(made))
       if ((name in wanted || name !== "part") && JSON.stringify(value) !== JSON.stringify(wanted[name]))

@@ -145,10 +145,10 @@ def check_acknowledgements(rows: list[Row]) -> dict:
     for row in filter(is_new, rows):
         if datagram.ACK not in row.numbers("tactus.part.type"):
             continue
-        told = by_frame[row.number("tactus.ack.frame")]
-        assert told.number("tactus.number") == row.number("tactus.ack.number"), (row, told)
-        assert told.number("tactus.direction") != row.number("tactus.direction"), (row, told)
-        assert told.number("frame.number") < row.number("frame.number"), (row, told)
+        acknowledged = by_frame[row.number("tactus.ack.frame")]
+        assert acknowledged.number("tactus.number") == row.number("tactus.ack.number"), (row, acknowledged)
+        assert acknowledged.number("tactus.direction") != row.number("tactus.direction"), (row, acknowledged)
+        assert acknowledged.number("frame.number") < row.number("frame.number"), (row, acknowledged)
         assert row.number("tactus.ack.number") % (1 << 16) == row.number("tactus.ack.newest")
         sample = row.number("tactus.ack.sample")
         if sample is None or row.number("tactus.direction") == UP:

@@ -285,7 +285,7 @@ def check_sealed() -> str:
 
 
 def check_middle(path: pathlib.Path, rows: list[Row]) -> str:
-    """A capture that begins after the join: everything is told by port, and no check is said to be good or bad."""
+    """A capture that begins after the join: everything is recognised by port, and no check is said to be good or bad."""
     late = [r for r in rows if r.number("tactus.form") != session.HANDSHAKE][10:]
     write_capture(path, [Sent(*way_of(r.number("tactus.direction")), r.bytes) for r in late])
     for before, row in zip(late, rows_of(path), strict=True):

@@ -89,8 +89,8 @@ def check(rows: list[Row], report: dict) -> str:
     assert sum(len(r.texts("tactus.packet")) for r in sent) == traffic["sent"]["packets"], traffic
     # What came when the client ended may not have been read: it heard what it acknowledged at least, and at most all.
     last = [r for r in sent if r["tactus.ack.number"]][-1]
-    told = len([n for n in came if n <= last.number("tactus.ack.number")]) - last.number("tactus.ack.missing_count")
-    assert 0 < told <= traffic["heard"]["datagrams"] <= len(came), (told, traffic, len(came))
+    acknowledged = len([n for n in came if n <= last.number("tactus.ack.number")]) - last.number("tactus.ack.missing_count")
+    assert 0 < acknowledged <= traffic["heard"]["datagrams"] <= len(came), (acknowledged, traffic, len(came))
     assert any(r.number("tactus.state.live") == 1 for r in sent) and traffic["heard"]["packets"] > 0
     return f"{len(rows)} datagrams, {len(sent)} up, {len(came)} down"
 
@@ -106,7 +106,7 @@ def main(args: list[str]) -> None:
         line_with(dumpcap, r"(File: )")
         server = start(tactus, "serve", "rotate-push-lift", "-p", "4%", "--listen", "0", "--duration", "100s", "--json")
         port = line_with(server, r":(\d+)$")
-        player = start(tactus, "join", port, "--scene", "rotate-push-lift", "-o", work / "felt.mcap", "--duration", "3s", "--json")
+        player = start(tactus, "join", port, "--scene", "rotate-push-lift", "-o", work / "client.mcap", "--duration", "3s", "--json")
         observer = start(tactus, "join", port, "--duration", "3s", "--json")
         reports = [report_of(program) for program in (player, observer)]
         server.send_signal(signal.SIGINT)  # once both have left

@@ -378,10 +378,10 @@ add_part[ACK] = function(r, tree, d)
   if held < 65535 then tree:add(f["ack.held_us"], held_range, 16 * held):set_generated() end
   local word = "ack " .. newest_range:le_uint() .. (count > 0 and " without " .. count or "")
   if not d.number then return word end
-  local told = d.epoch.newest[1 - d.direction]
+  local newest_sent = d.epoch.newest[1 - d.direction]
   if d.fresh then
-    local back = (told - newest_range:le_uint()) % 65536
-    local number = told - back
+    local back = (newest_sent - newest_range:le_uint()) % 65536
+    local number = newest_sent - back
     local sent = number > 0 and d.epoch.seen[1 - d.direction][number]
     d.memory.ack = sent and { number = number, frame = sent.frame }
     if sent and held < 65535 and number > d.epoch.acknowledged[d.direction] then

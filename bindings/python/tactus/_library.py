@@ -42,16 +42,16 @@ class Error(Exception):
     def __init__(self, error: Any, subject: str = "", words: str = "", detail: str = "") -> None:
         self._of = (error.status, error.rule, error.bit_offset, subject, words, detail)
         library = core()
-        told = ctypes.byref(error)
+        by_reference = ctypes.byref(error)
         self.name: str = library.tactus_status_name(error.status).decode()
         self.code: int = error.status
         self.rule: str = (error.rule or b"").decode()
         self.bit_offset: int = error.bit_offset
-        self.remedy: str = _REMEDIES.get(self.rule) or library.tactus_error_remedy(told).decode()
-        self.advice: str = ("none", "drop", "request_key", "close")[library.tactus_error_advice(told)]
+        self.remedy: str = _REMEDIES.get(self.rule) or library.tactus_error_remedy(by_reference).decode()
+        self.advice: str = ("none", "drop", "request_key", "close")[library.tactus_error_advice(by_reference)]
         self.subject, self.words, self.detail = subject, words, detail
         place = f" at byte {self.bit_offset // 8}" if self.bit_offset else ""
-        text = library.tactus_error_text(told).decode()
+        text = library.tactus_error_text(by_reference).decode()
         subject = f"{subject}: " if subject else ""
         figures = f": {detail}" if detail else ""
         super().__init__(words or f"{subject}{text}{place} ({self.name}, {self.rule}){figures}. {self.remedy}".rstrip())
@@ -161,7 +161,7 @@ def traces() -> _Library:
 
 def call(function: Any, *arguments: Any, subject: str = "", words: Any = None) -> bool:
     """Call a function whose last argument is the error. True: done; False: nothing is there.   raises  Error
-    words: the function that tells what it said"""
+    words: the function that returns its words"""
     error = _abi.tactus_error()
     status = function(*arguments, error)
     if status == OK:

@@ -187,9 +187,9 @@ class Sender(Handle):
 def _held(part: Any) -> Held:
     error = _abi.tactus_error()
     error.status, error.rule = _abi.TACTUS_INVALID_ARGUMENT, part.rule
-    told = ctypes.byref(error)
+    by_reference = ctypes.byref(error)
     return Held(PARTS[part.part], part.index, part.name.decode(), part.since, part.rule.decode(),
-                core().tactus_error_text(told).decode(), core().tactus_error_remedy(told).decode())
+                core().tactus_error_text(by_reference).decode(), core().tactus_error_remedy(by_reference).decode())
 
 
 def _fill_shape(form: Any, shape: Shape) -> npt.NDArray[np.float32] | None:
@@ -274,7 +274,7 @@ class Receiver(Handle, _Shown):
         """Decode a packet.
 
         now     [ticks] time of arrival on the receiver's clock; None: each packet counts as arriving in its own tick
-        raises  Error, whose `advice` tells how to react; the receiver is then unchanged
+        raises  Error, whose `advice` says how to react; the receiver is then unchanged
         """
         info, data = answer(_abi.tactus_packet_info), bytes_of(packet)
         call(core().tactus_receiver_push, self.handle, data, len(data), NO_CLOCK if now is None else now, info)

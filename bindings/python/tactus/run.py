@@ -140,7 +140,7 @@ def _all_ticks(stream: str | os.PathLike[str] | bytes) -> npt.NDArray[np.int64]:
             size += sum(packet.size for packet in player.play(tick))
             last = tick
     if last > 600_000 + 512 * size:  # as `tactus decode`: a few bytes must not ask for gigabytes
-        raise ValueError(f"the last packet is at tick {last}, implausibly far for packets of {size} bytes in all; tell the ticks")
+        raise ValueError(f"the last packet is at tick {last}, implausibly far for packets of {size} bytes in all; give the ticks")
     return np.arange(last + 1, dtype=np.int64)
 
 

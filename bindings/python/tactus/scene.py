@@ -222,12 +222,12 @@ class _Builder(Handle):
         pose = _abi.tactus_pose((ctypes.c_double * 3)(*of.position), (ctypes.c_double * 4)(*of.rotation))
         call(core().tactus_scene_builder_rigid, self.handle, text_of(of.name.encode()), ctypes.byref(pose), of.dof, subject=of.name)
         if of.driven is not None:
-            told = _abi.tactus_driven_physics()
-            core().tactus_driven_physics_init(told, ctypes.sizeof(told))
+            physics = _abi.tactus_driven_physics()
+            core().tactus_driven_physics_init(physics, ctypes.sizeof(physics))
             for field in dataclasses.fields(of.driven):
                 value = getattr(of.driven, field.name)
-                setattr(told, field.name, (ctypes.c_double * 3)(*value) if field.name == "inertia" else value)
-            call(core().tactus_scene_builder_driven, self.handle, told, subject=of.name)
+                setattr(physics, field.name, (ctypes.c_double * 3)(*value) if field.name == "inertia" else value)
+            call(core().tactus_scene_builder_driven, self.handle, physics, subject=of.name)
 
     def add_mesh(self, of: Mesh) -> None:
         vertices, triangles = _arrays(of)
@@ -252,20 +252,20 @@ class _Builder(Handle):
         material = None if of.material is None else _whole(name, "material", of.material, np.uint8)
         if material is not None and len(material) != len(tets):
             raise ValueError(f"{name}: {len(material)} numbers of materials for {len(tets)} tetrahedra")
-        told = _abi.tactus_elastic_physics()
-        core().tactus_elastic_physics_init(told, ctypes.sizeof(told))
-        told.materials, told.material_count = materials.ctypes.data, len(materials)
-        told.inner, told.inner_count = inner.ctypes.data, len(inner)
-        told.tets, told.tet_count = tets.ctypes.data, len(tets)
-        told.fixed, told.fixed_count = fixed.ctypes.data, len(fixed)
-        told.material = None if material is None else material.ctypes.data
-        told.gravity = (ctypes.c_double * 3)(*of.gravity)
+        physics = _abi.tactus_elastic_physics()
+        core().tactus_elastic_physics_init(physics, ctypes.sizeof(physics))
+        physics.materials, physics.material_count = materials.ctypes.data, len(materials)
+        physics.inner, physics.inner_count = inner.ctypes.data, len(inner)
+        physics.tets, physics.tet_count = tets.ctypes.data, len(tets)
+        physics.fixed, physics.fixed_count = fixed.ctypes.data, len(fixed)
+        physics.material = None if material is None else material.ctypes.data
+        physics.gravity = (ctypes.c_double * 3)(*of.gravity)
         if of.method not in _METHODS:
             raise ValueError(f"{name}: method {of.method!r} is none of {', '.join(_METHODS)}")
-        told.method = _METHODS[of.method]
+        physics.method = _METHODS[of.method]
         for part in ("mass_damping", "stiffness_damping", "coupling", "friction", "sub_steps"):
-            setattr(told, part, getattr(of, part))
-        call(core().tactus_scene_builder_elastic, self.handle, told, subject=name)
+            setattr(physics, part, getattr(of, part))
+        call(core().tactus_scene_builder_elastic, self.handle, physics, subject=name)
 
     def build(self) -> Scene:
         scene, error = Scene(), _abi.tactus_error()

@@ -20,7 +20,7 @@ from .options import DeformableBounds, RigidBounds
 from .scene import Mesh, Scene
 
 #: One user at one tick: device (position (3) [m], orientation (4), velocity (3) [m/s], buttons, time [ns]); contact as CONTACT;
-#: force (3) [N] as felt and server_force (3) [N] of the true state: see TraceReader.known_forces; touches_mesh, mesh, triangle,
+#: force (3) [N] as rendered to the hand and server_force (3) [N] of the true state: see TraceReader.known_forces; touches_mesh, mesh, triangle,
 #: weights (3), proxy (3) [m], mesh_normal (3), mesh_stiffness [N/m]. World frame.
 USER = np.dtype(_abi.tactus_user_sample)
 
@@ -47,7 +47,7 @@ class Frame:
 
 
 def _names_of_forces(bits: int) -> frozenset[str]:
-    return frozenset(name for name, bit in (("felt", _abi.TACTUS_FORCE_FELT), ("server", _abi.TACTUS_FORCE_SERVER)) if bits & bit)
+    return frozenset(name for name, bit in (("rendered", _abi.TACTUS_FORCE_RENDERED), ("server", _abi.TACTUS_FORCE_SERVER)) if bits & bit)
 
 
 class TraceReader(Handle):
@@ -72,19 +72,19 @@ class TraceReader(Handle):
         call(traces().tactus_trace_get, self.handle, info)
         self.tick_rate: int = info.tick_rate  #: ticks per second
         self.source: str = info.source.decode()  #: "sim push-1dof seed 1"
-        self.frames: int | None = info.frames if info.has_frames else None  #: how many, if the file tells
-        objects = self._told(traces().tactus_trace_get_object, _abi.tactus_trace_object, info.objects)
-        users = self._told(traces().tactus_trace_get_user, _abi.tactus_trace_user, info.users)
-        self.dofs: list[int] = [told.dof for told in objects]  #: axes that each object can move along and about
-        self.senses: list[int] = [told.senses for told in users]  #: of each device, beside its position: 1 orientation, 2 velocity, 4 buttons, 8 time
-        self.objects: list[str] = [told.name.decode() for told in objects]
-        self.users: list[str] = [told.name.decode() for told in users]
-        #: per user: "felt", if it is known what the hand felt, else `force` is the server's; "server", if the server's force is
-        #: known, else `server_force` is 0. A server is not told the one, a client not the other
-        self.known_forces: list[frozenset[str]] = [_names_of_forces(told.forces) for told in users]
+        self.frames: int | None = info.frames if info.has_frames else None  #: how many, if the file states it
+        objects = self._entries(traces().tactus_trace_get_object, _abi.tactus_trace_object, info.objects)
+        users = self._entries(traces().tactus_trace_get_user, _abi.tactus_trace_user, info.users)
+        self.dofs: list[int] = [entry.dof for entry in objects]  #: axes that each object can move along and about
+        self.senses: list[int] = [entry.senses for entry in users]  #: of each device, beside its position: 1 orientation, 2 velocity, 4 buttons, 8 time
+        self.objects: list[str] = [entry.name.decode() for entry in objects]
+        self.users: list[str] = [entry.name.decode() for entry in users]
+        #: per user: "rendered", if the force rendered to the hand is known, else `force` is the server's; "server", if the server's force is
+        #: known, else `server_force` is 0. A server does not receive the one, a client not the other
+        self.known_forces: list[frozenset[str]] = [_names_of_forces(entry.forces) for entry in users]
         self.meshes: list[Mesh] = [self._mesh(i) for i in range(info.meshes)]
 
-    def _told(self, function: Any, structure: Any, count: int) -> list[Any]:
+    def _entries(self, function: Any, structure: Any, count: int) -> list[Any]:
         out = [answer(structure) for _ in range(count)]
         for i, info in enumerate(out):
             call(function, self.handle, i, info)
@@ -244,7 +244,7 @@ class Trace:
 
     @property
     def force(self) -> npt.NDArray[np.float64]:
-        """(T, U, 3) [N] as the hands felt it, world; the server's of users without "felt" in known_forces"""
+        """(T, U, 3) [N] rendered to the hands, world; the server's of users without "rendered" in known_forces"""
         return self.users["force"]
 
     @property
@@ -265,7 +265,7 @@ class _Writer(Handle):
         for name, dof in zip(of.object_names, of.dofs or [63] * len(of.object_names)):
             call(library.tactus_trace_writer_object, self.handle, text_of(name.encode()), dof, subject=name)
         for name, senses, known in zip(of.user_names, of.senses or [0] * len(of.user_names), of.known_forces):
-            bits = (_abi.TACTUS_FORCE_FELT if "felt" in known else 0) | (_abi.TACTUS_FORCE_SERVER if "server" in known else 0)
+            bits = (_abi.TACTUS_FORCE_RENDERED if "rendered" in known else 0) | (_abi.TACTUS_FORCE_SERVER if "server" in known else 0)
             call(library.tactus_trace_writer_user, self.handle, text_of(name.encode()), senses, bits, subject=name)
         for mesh in of.meshes:
             rest, triangles = np.ascontiguousarray(mesh.vertices, np.float64), np.ascontiguousarray(mesh.triangles, np.uint32)

@@ -95,7 +95,7 @@ class Page {
     truth?.users.forEach((user, i) => {
       readings.group(truth.users.length > 1 ? `Force on ${user.name}` : "Force");
       if (user.server) readings.add(`server-${i}`, "server", "force");
-      if (user.felt) readings.add(`felt-${i}`, "felt by the hand", "force");
+      if (user.rendered) readings.add(`rendered-${i}`, "rendered to the hand", "force");
       if (user.shown) readings.add(`shown-${i}`, "normal, decoded", "force");
     });
     return readings;
@@ -131,11 +131,11 @@ class Page {
     const within = scene.rigid.length > 0 ? truth?.ghostPosition : truth?.ghostVertex;
     if (truth) entries.push(["frame", "ghost", `truth (drawn within ${plain(within, "length")})`]);
     if (truth?.users.length > 0) {
-      const tellsFelt = truth.users.some(({felt}) => felt);
-      const areFelt = !tellsFelt && truth.users.every(({knows}) => knows === "both");
+      const hasRendered = truth.users.some(({rendered}) => rendered);
+      const areRendered = !hasRendered && truth.users.every(({knows}) => knows === "both");
       entries.push(["dot", "device", "device"]);
-      if (truth.users.some(({server}) => server)) entries.push(["", "server", areFelt ? "force felt" : "force of the server"]);
-      if (tellsFelt) entries.push(["", "felt", "force felt"]);
+      if (truth.users.some(({server}) => server)) entries.push(["", "server", areRendered ? "rendered force" : "force of the server"]);
+      if (hasRendered) entries.push(["", "rendered", "rendered force"]);
       if (truth.users.some(({shown}) => shown)) entries.push(["", "shown", "normal force, as decoded"]);
     }
     byId("legend").replaceChildren(...entries.map(([shape, named, text]) => {
@@ -192,37 +192,37 @@ class Page {
     if (this.picture) this.picture.show(tick);
     else this.model.moveTo(tick);
     this.timeline.moveTo(this.clock.time);
-    this.#tell(tick);
+    this.#fillReadings(tick);
     const isPlace = !this.clock.plays && !this.model.isLive;
     if (isPlace) history.replaceState(null, "", `#t=${this.clock.time.toFixed(3)}`);
   }
 
-  #tell(tick) {
+  #fillReadings(tick) {
     const {model, clock, picture} = this;
     byId("play").textContent = clock.plays || clock.follows ? "Pause" : "Play";
     byId("follow").disabled = clock.follows;
     byId("clock").textContent = model.isLive ? this.#liveClock() : `${clock.time.toFixed(3)} s of ${model.duration.toFixed(3)} s`;
-    this.#tellScales();
+    this.#showScales();
     const line = byId("timeline");
     line.setAttribute("aria-valuemin", String(clock.start));
     line.setAttribute("aria-valuemax", String(model.duration));
     line.setAttribute("aria-valuenow", clock.time.toFixed(3));
     line.setAttribute("aria-valuetext", `${clock.time.toFixed(3)} s`);
     const count = model.packetsUpTo(tick);
-    if (model.isLive) this.#tellRates(model.packetsUpTo(tick - model.tickRate), count);
-    else this.#tellTotals(count);
-    if (model.checked) this.#tellChecked(model.checked);
-    this.#tellTruth(tick);
-    if (picture?.colouring) this.#tellColours();
+    if (model.isLive) this.#showRates(model.packetsUpTo(tick - model.tickRate), count);
+    else this.#showTotals(count);
+    if (model.checked) this.#showChecked(model.checked);
+    this.#showTruth(tick);
+    if (picture?.colouring) this.#showColours();
   }
 
-  #tellTotals(count) {
+  #showTotals(count) {
     this.readings.set("packets", String(count));
     this.readings.set("bytes", `${(this.#payload(0, count) / 1000).toFixed(2)} kB`);
   }
 
   // Of the last second.
-  #tellRates(first, end) {
+  #showRates(first, end) {
     this.readings.set("packets", `${end - first} /s`);
     this.readings.set("bytes", `${((8 * this.#payload(first, end)) / 1000).toFixed(2)} kbit/s`);
   }
@@ -232,22 +232,22 @@ class Page {
     return follows ? `${time.toFixed(2)} s, now` : `${time.toFixed(3)} s, ${(duration - time).toFixed(1)} s ago`;
   }
 
-  // Once a second the server tells its hashes.
-  #tellChecked({tick, isEqual}) {
+  // Once a second the server sends its hashes.
+  #showChecked({tick, isEqual}) {
     const at = `${(tick / this.model.tickRate).toFixed(1)} s`;
     this.readings.set("checked", isEqual ? `equal, ${at}` : `NOT equal, ${at}`, !isEqual);
   }
 
-  #tellScales() {
+  #showScales() {
     const {picture, model} = this;
     if (!picture) return;
-    const unknown = picture.objects?.areKnown === false ? ["axes stand for objects whose shapes nobody told (--truth, --scene)"] : [];
+    const unknown = picture.objects?.areKnown === false ? ["axes stand for objects whose shapes are not known (--truth, --scene)"] : [];
     const lost = model.leftOut > 0 ? [`${model.leftOut} ticks were left out: the server was too busy`] : [];
     const text = [...picture.scales, ...unknown, ...lost].join(" · ");
     if (byId("scale").textContent !== text) byId("scale").textContent = text;
   }
 
-  #tellTruth(tick) {
+  #showTruth(tick) {
     const {truth, scene} = this.model;
     const row = this.model.rowAt(tick);
     if (row < 0) return;
@@ -267,14 +267,14 @@ class Page {
     });
     truth.users.forEach((user, i) => {
       const touch = user.kind[row];  // 1, 2: of a rigid object, which alone has a force as decoded
-      for (const kind of ["server", "felt", "shown"]) {
-        const tells = kind === "shown" ? touch === 1 || touch === 2 : touch > 0;
-        if (user[kind]) this.readings.set(`${kind}-${i}`, tells ? norm(user[kind], row) : null);
+      for (const kind of ["server", "rendered", "shown"]) {
+        const isKnown = kind === "shown" ? touch === 1 || touch === 2 : touch > 0;
+        if (user[kind]) this.readings.set(`${kind}-${i}`, isKnown ? norm(user[kind], row) : null);
       }
     });
   }
 
-  #tellColours() {
+  #showColours() {
     const {colouring} = this.picture;
     const bar = byId("colour-bar").getContext("2d");
     map.forEach((rgb, x) => {
@@ -288,7 +288,7 @@ class Page {
   }
 }
 
-function tellStatus(text, isOver) {
+function showStatus(text, isOver) {
   const status = byId("status");
   status.hidden = false;
   status.textContent = text;
@@ -301,8 +301,8 @@ function observe(tactus, begin) {
   let hello = null;
   let page = null;
   new Feed(`ws://${location.host}/live`, {
-    open: () => tellStatus("live", false),
-    closed: (text) => tellStatus(`${text}; asking again`, true),
+    open: () => showStatus("live", false),
+    closed: (text) => showStatus(`${text}; asking again`, true),
     message(message) {
       if (page && message.version) location.reload();
       else if (page) page.model.append(message, page.clock.follows), page.grow();

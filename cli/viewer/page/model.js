@@ -60,8 +60,8 @@ export function readTruth(truth) {
   };
 }
 
-// The force that is drawn over time. A user tells those that the truth knows, and what was felt only if it is not the server's.
-export const forceOf = ({felt, server}) => felt ?? server;
-export const nameOfForce = ({knows}) => (knows === "server" ? "force of the server" : "force felt");
+// The force that is drawn over time. A user has those that the truth knows, and the rendered one only if it is not the server's.
+export const forceOf = ({rendered, server}) => rendered ?? server;
+export const nameOfForce = ({knows}) => (knows === "server" ? "force of the server" : "rendered force");
 
 export const norm = (columns, row) => Math.hypot(columns[0][row], columns[1][row], columns[2][row]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rigid objects: boxes and solids where a scene tells their shapes, else axes.
+// Rigid objects: boxes and solids where a scene has their shapes, else axes.
 import {
   AxesHelper, BoxGeometry, BufferAttribute, BufferGeometry, EdgesGeometry, Group, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh,
   MeshStandardMaterial,

@@ -167,7 +167,7 @@ function largestLength(vectors) {
   return most;
 }
 
-const forceAt = ({users}, row) => Math.max(0, ...users.flatMap(({server, felt}) => [server, felt]).map((force) => (force ? norm(force, row) : 0)));
+const forceAt = ({users}, row) => Math.max(0, ...users.flatMap(({server, rendered}) => [server, rendered]).map((force) => (force ? norm(force, row) : 0)));
 
 const powerOfTwo = (value) => 2 ** Math.ceil(Math.log2(Math.max(1, value)));
 

@@ -31,7 +31,7 @@ export class Readings {
     this.#rows.set(key, {row, value, kind});
   }
 
-  // in  value  SI, a text, or null: nothing to tell
+  // in  value  SI, a text, or null: nothing to show
   set(key, value, isOver = false) {
     const {row, value: cell, kind} = this.#rows.get(key);
     const text = value === null ? "–" : kind ? inUnit(value, kind) : value;

@@ -53,7 +53,7 @@ export function rowsOf(model) {
       const force = truth.ticks.map((_, row) => norm(forceOf(user), row));
       const kind = nameOfForce(user);
       const name = truth.users.length > 1 ? `${kind}, ${short(user.name)}` : kind;
-      add(name, "force", force, {colour: user.felt ? "felt" : "server"});
+      add(name, "force", force, {colour: user.rendered ? "rendered" : "server"});
     });
   }
   rows.push(rateRow(model));

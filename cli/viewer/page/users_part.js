@@ -64,7 +64,7 @@ export class UsersPart {
     tie.frustumCulled = false;
     this.layers.contact.add(contact, tie);
     const arrows = {};
-    for (const [kind, radius] of [["server", 0.42], ["felt", 0.3], ["shown", 0.2]]) {
+    for (const [kind, radius] of [["server", 0.42], ["rendered", 0.3], ["shown", 0.2]]) {
       if (user[kind]) this.layers.forces.add((arrows[kind] = new Arrow(radius * this.#size)));
     }
     return {data: user, device, trail, contact, tie, arrows};

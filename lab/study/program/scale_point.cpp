@@ -15,7 +15,7 @@ Json scale_point(Request& request) {
   of.seed = request.get<std::uint64_t>("seed", 1);
   of.loss = request.get<double>("loss", 0);
   of.role = request.get("participants", false) ? Role::participant : Role::observer;
-  of.tells_moved = request.get("tells_moved", false);
+  of.names_moved = request.get("names_moved", false);
   of.spread = request.get("spread", false);
   of.reach = request.get<double>("reach", 0);
   request.check_all_known();

@@ -91,16 +91,16 @@ class Watcher {
   int since_update_ = 0, known_ = 0;
 };
 
-/// Adds up packets and the error of what is felt, tick by tick.
+/// Adds up packets and the error of what is rendered, tick by tick.
 class Counter {
  public:
-  void add(const UserSample& user, std::size_t packets, const Vec3& felt) {
+  void add(const UserSample& user, std::size_t packets, const Vec3& rendered) {
     ++ticks_;
     packets_ += packets;
-    if (norm(user.server_force) == 0 && norm(felt) == 0) return;
+    if (norm(user.server_force) == 0 && norm(rendered) == 0) return;
     ++contact_;
     contact_packets_ += packets;
-    const Vec3 error = felt - user.server_force;
+    const Vec3 error = rendered - user.server_force;
     square_ += dot(error, error);
   }
   Json json() const {
@@ -117,7 +117,7 @@ class Counter {
   double square_ = 0;
 };
 
-/// The client renders what it is told of the object.
+/// The client renders what it receives of the object.
 Json with_states(const sim::Scene& scene, const sim::ChannelOptions& channel, sim::Grip grip, std::uint64_t seed) {
   auto simulation = need(sim::Simulation::create(scene, {.seed = seed, .grip = grip, .channel = channel}), scene.name);
   Counter counter;
@@ -129,7 +129,7 @@ Json with_states(const sim::Scene& scene, const sim::ChannelOptions& channel, si
   return counter.json();
 }
 
-/// The server renders, and the hand feels what it is told of the force.
+/// The server renders, and the hand feels what it receives of the force.
 Json with_forces(const sim::Scene& scene, const ForceCoding& coding, sim::Grip grip, std::uint64_t seed) {
   sim::SimulationOptions settings;
   settings.seed = seed;
@@ -141,8 +141,8 @@ Json with_forces(const sim::Scene& scene, const ForceCoding& coding, sim::Grip g
   std::vector<DeviceSample> devices(1);
   Counter counter;
   for (std::int64_t tick = 0; tick < simulation.ticks(); ++tick) {
-    const Vec3 felt = receiver.force(tick);
-    devices[0] = hand.step(felt, simulation.client_poses()[scene.users[0].object]);
+    const Vec3 rendered = receiver.force(tick);
+    devices[0] = hand.step(rendered, simulation.client_poses()[scene.users[0].object]);
     need(simulation.step(devices));
     const UserSample& user = simulation.frame().users[0];
     const auto sample = need(sender.encode(tick, user.server_force), scene.name, cli::place_of_tick(tick));
@@ -163,17 +163,17 @@ Json push_point(Request& request) {
   const auto more = request.get<std::int64_t>("ticks_more", 0);
   request.check_all_known();
   auto simulation = need(sim::Simulation::create(scene, {.seed = seed, .grip = grip, .channel = channel}), scene.name);
-  Json felt = Json::array(), server = Json::array(), position = Json::array(), shown = Json::array(), update = Json::array();
+  Json rendered = Json::array(), server = Json::array(), position = Json::array(), shown = Json::array(), update = Json::array();
   for (std::int64_t tick = 0; tick < simulation.ticks() + more; ++tick) {
     const auto packets = need(simulation.step());
     const TraceFrame& frame = simulation.frame();
-    felt.push_back(frame.users[0].force.x);
+    rendered.push_back(frame.users[0].force.x);
     server.push_back(frame.users[0].server_force.x);
     position.push_back(frame.objects[0].pose.position.x);
     shown.push_back(simulation.client_poses()[0].position.x);
     update.push_back(packets.empty() ? Json(nullptr) : Json(cli::kReasons[static_cast<std::size_t>(packets.front().reason)]));
   }
-  return {{"force_felt_N", std::move(felt)},
+  return {{"force_rendered_N", std::move(rendered)},
           {"force_server_N", std::move(server)},
           {"position_m", std::move(position)},
           {"position_shown_m", std::move(shown)},

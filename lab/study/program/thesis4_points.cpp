@@ -21,7 +21,7 @@ namespace {
 
 namespace library = sim::study;
 
-constexpr std::size_t kSparse = 100;  // [ticks] between the round trips that are told
+constexpr std::size_t kSparse = 100;  // [ticks] between the round trips that are written
 
 Json ticks_of(const std::vector<library::DelayTick>& ticks) {
   Json force = Json::array(), stiffness = Json::array(), round_trip = Json::array();
@@ -233,12 +233,12 @@ Json press_point(Request& request) {
   }
   request.check_all_known();
   Json out{{"users", Json::array()}};
-  const auto felt = need(sim::press(pressing), "press");
-  for (std::size_t i = 0; i < felt.size(); ++i) {
+  const auto rendered = need(sim::press(pressing), "press");
+  for (std::size_t i = 0; i < rendered.size(); ++i) {
     std::vector<double> depth;
-    for (std::size_t tick = 0; tick < felt[i].client.size(); ++tick)
+    for (std::size_t tick = 0; tick < rendered[i].client.size(); ++tick)
       depth.push_back(sim::depth_of(pressing.users[i].presses, 1e-3 * static_cast<double>(tick), pressing.frequency));
-    out["users"].push_back({{"client_N", felt[i].client}, {"server_N", felt[i].server}, {"depth_m", depth}});
+    out["users"].push_back({{"client_N", rendered[i].client}, {"server_N", rendered[i].server}, {"depth_m", depth}});
   }
   return out;
 }

@@ -54,11 +54,11 @@ struct Recording {
 
 /// Loses the first packet from frame 5 on that changes something and that another one follows.
 std::optional<bool> survives_loss(const Animation& animation, const Scheme& scheme, const Recording& recording) {
-  const auto tells_nothing = [&](std::size_t f) {
+  const auto is_empty = [&](std::size_t f) {
     return recording.packets[f].empty() || recording.packets[f + 1].empty() || recording.shown[f] == recording.shown[f - 1];
   };
   std::size_t lost = 5;
-  while (lost + 1 < recording.packets.size() && tells_nothing(lost)) ++lost;
+  while (lost + 1 < recording.packets.size() && is_empty(lost)) ++lost;
   if (lost + 1 >= recording.packets.size()) return {};
   const auto link = scheme.make(animation);
   std::vector<Vec3i> shown(animation.rest.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the hand on a device feels: nothing, a scene, a recording.
+/// What is rendered to the hand on a device: nothing, a scene, a recording.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,10 @@
 
 namespace tactus::cli {
 
-// ==== felt ====
+// ==== rendered ====
 
-/// What the hand on a device feels, tick by tick, and what a trace says of it.
-class Felt {
+/// What is rendered to the hand on a device, tick by tick, and what a trace says of it.
+class Rendered {
  public:
   /// Set-up, on the thread that then calls step().
   virtual Outcome begin() { return {}; }
@@ -27,36 +27,36 @@ class Felt {
   virtual TraceInfo info() const = 0;
   virtual std::size_t user() const noexcept { return 0; }
 
-  /// The force [N] that the hand should feel.
+  /// The force [N] to render.
   /// out  frame  all that the trace holds of this tick, but its number, what was exerted, and how the servo kept its time
   /// time at most 1 ms on average; no allocation
   virtual tl::expected<Vec3, Failure> step(const device::ServoTick& tick, TraceFrame& frame) = 0;
   virtual bool is_over() const noexcept { return false; }
 
-  virtual ~Felt() = default;
+  virtual ~Rendered() = default;
 };
 
 /// Motion alone.
-class FeltNothing final : public Felt {
+class RenderedNothing final : public Rendered {
  public:
   TraceInfo info() const override;
   tl::expected<Vec3, Failure> step(const device::ServoTick& tick, TraceFrame& frame) override;
 };
 
-// ==== felt recording ====
+// ==== rendered recording ====
 
 enum class Exerted : std::uint8_t {
   nothing,
-  force,  ///< what the hand of the recording felt
+  force,  ///< what was rendered to the hand of the recording
   path,   ///< a spring draws the hand to where that of the recording was
 };
 
 /// A recording, played from the first sample on that the device has of its hand; both hands begin at the same place. The trace is in the
 /// recording's frame.
-class FeltRecording final : public Felt {
+class RenderedRecording final : public Rendered {
  public:
   /// in   stiffness  [N/m] of the spring
-  FeltRecording(device::Recording recording, Exerted exerted, double stiffness);
+  RenderedRecording(device::Recording recording, Exerted exerted, double stiffness);
 
   TraceInfo info() const override;
   tl::expected<Vec3, Failure> step(const device::ServoTick& tick, TraceFrame& frame) override;
@@ -83,13 +83,13 @@ class FeltRecording final : public Felt {
   std::uint64_t ticks_ = 0;
 };
 
-// ==== felt scene ====
+// ==== rendered scene ====
 
 /// A scene, simulated here, that one of its users touches by the device; the others have virtual hands.
-class FeltScene final : public Felt {
+class RenderedScene final : public Rendered {
  public:
   /// in   scene, device  outlive it
-  FeltScene(const sim::Scene& scene, std::size_t user, std::uint64_t seed, const ChosenDevice& device);
+  RenderedScene(const sim::Scene& scene, std::size_t user, std::uint64_t seed, const ChosenDevice& device);
 
   Outcome begin() override;
   TraceInfo info() const override { return simulation_->info(); }

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/live/felt.h"
+#include "cli/live/rendered.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace tactus::cli {
 
-// ==== felt ====
+// ==== rendered ====
 
-TraceInfo FeltNothing::info() const {
+TraceInfo RenderedNothing::info() const {
   TraceInfo info;
-  info.users.push_back({.name = "hand", .forces = KnownForces::felt});
+  info.users.push_back({.name = "hand", .forces = KnownForces::rendered});
   return info;
 }
 
-tl::expected<Vec3, Failure> FeltNothing::step(const device::ServoTick& tick, TraceFrame& frame) {
+tl::expected<Vec3, Failure> RenderedNothing::step(const device::ServoTick& tick, TraceFrame& frame) {
   frame.users.front().device = tick.reading.sample;
   return Vec3{};
 }
 
-// ==== felt recording ====
+// ==== rendered recording ====
 
 namespace {
 
@@ -31,16 +31,16 @@ constexpr double kSmoothing = 0.1;                     // of the speed, per tick
 
 }  // namespace
 
-FeltRecording::FeltRecording(device::Recording recording, Exerted exerted, double stiffness)
+RenderedRecording::RenderedRecording(device::Recording recording, Exerted exerted, double stiffness)
     : recording_(std::move(recording)), exerted_(exerted), stiffness_(stiffness) {}
 
-TraceInfo FeltRecording::info() const {
+TraceInfo RenderedRecording::info() const {
   TraceInfo info;
-  info.users.push_back({.name = recording_.user().name, .forces = KnownForces::felt});
+  info.users.push_back({.name = recording_.user().name, .forces = KnownForces::rendered});
   return info;
 }
 
-tl::expected<Vec3, Failure> FeltRecording::step(const device::ServoTick& tick, TraceFrame& frame) {
+tl::expected<Vec3, Failure> RenderedRecording::step(const device::ServoTick& tick, TraceFrame& frame) {
   DeviceSample sample = tick.reading.sample;
   if (begin_ < 0 && tick.reading.state == device::Reading::State::valid) {
     begin_ = tick.due;
@@ -63,7 +63,7 @@ tl::expected<Vec3, Failure> FeltRecording::step(const device::ServoTick& tick, T
 }
 
 /// It grows from nothing, also when the recording begins again and the hand is far away.
-Vec3 FeltRecording::spring(const Vec3& way, const Vec3& hand, Time into, Time now) noexcept {
+Vec3 RenderedRecording::spring(const Vec3& way, const Vec3& hand, Time into, Time now) noexcept {
   if (now > placed_) {
     const Vec3 speed = (1e9 / static_cast<double>(now - placed_)) * (hand - place_);
     speed_ = speed_ + kSmoothing * (speed - speed_);
@@ -74,16 +74,16 @@ Vec3 FeltRecording::spring(const Vec3& way, const Vec3& hand, Time into, Time no
   return fraction * (stiffness_ * way - kDamping * speed_);
 }
 
-FeltRecording::Distance FeltRecording::distance() const noexcept {
+RenderedRecording::Distance RenderedRecording::distance() const noexcept {
   return {ticks_ > 0 ? sum_ / static_cast<double>(ticks_) : 0, largest_};
 }
 
-// ==== felt scene ====
+// ==== rendered scene ====
 
-FeltScene::FeltScene(const sim::Scene& scene, std::size_t user, std::uint64_t seed, const ChosenDevice& device)
+RenderedScene::RenderedScene(const sim::Scene& scene, std::size_t user, std::uint64_t seed, const ChosenDevice& device)
     : scene_(scene), user_(user), seed_(seed), hand_(device.hand), origin_(device.in_world ? Vec3{} : scene.users[user].start) {}
 
-Outcome FeltScene::begin() {
+Outcome RenderedScene::begin() {
   auto simulation = sim::Simulation::create(scene_, {.seed = seed_, .grip = {}, .channel = {}});
   if (!simulation) return refuse(scene_.name, simulation.error());
   simulation_.emplace(std::move(*simulation));
@@ -91,7 +91,7 @@ Outcome FeltScene::begin() {
   return {};
 }
 
-tl::expected<Vec3, Failure> FeltScene::step(const device::ServoTick& tick, TraceFrame& frame) {
+tl::expected<Vec3, Failure> RenderedScene::step(const device::ServoTick& tick, TraceFrame& frame) {
   DeviceSample sample = tick.reading.sample;
   sample.position = sample.position + origin_;
   if (const auto stepped = simulation_->step(user_, sample); !stepped) return refuse(stepped.error());
@@ -100,7 +100,7 @@ tl::expected<Vec3, Failure> FeltScene::step(const device::ServoTick& tick, Trace
   return frame.users[user_].force;
 }
 
-void FeltScene::show() noexcept {
+void RenderedScene::show() noexcept {
   if (hand_ != nullptr) hand_->watch(simulation_->watched(user_));
 }
 
