@@ -132,12 +132,12 @@ class Sender {
 
   /// Multiply all bounds but the heartbeat, from the next tick on: less to send where the way does not carry what they ask for.
   /// in   factor  1 to 64; it is limited to these. 1: the bounds as given
-  void set_widening(double factor) noexcept;
+  void set_bound_scale(double factor) noexcept;
 
   /// In a scene with interest: where its client looks from, from the next tick on, so that what is far is told with wider bounds or not at all
   /// (SceneBuilder::interest()). Before the first call all rigid objects are told in full; where no place is known, none.
   /// in   places  [m] at most two: its device, and its eyes or whatever stands for them. Others are ignored.   time 10 ns
-  void look_from(std::span<const Vec3> places) noexcept;
+  void set_viewpoints(std::span<const Vec3> places) noexcept;
 
   /// Report that the newest packet of this substream will not be decoded (it is dropped, or known to be lost). The next one
   /// builds on the state before it, or on the initial state if the scene's baseline_span does not reach that far. At most once

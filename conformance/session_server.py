@@ -16,7 +16,7 @@ from session import FIRST_ANSWER, MS, PIECE_SIZE, WINDOW, Epoch
 
 
 LEAST_JOIN = 80                                             # bytes
-WELCOME_EVERY, UNPROVEN, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
+WELCOME_EVERY, UNVALIDATED, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
 MOST_FAULTS = 100                                           # datagrams
 DRIVEN_PATIENCE = 140 * MS
 ROLES = "observer", "participant"
@@ -38,7 +38,7 @@ class ServedEpoch(Epoch):
         self.open: set[int] = set()                         # own numbers whose fate is not known
         self.timeouts = 0                                   # of pieces, since the last that arrived
         self.device_packets = 0
-        self.told, self.asked_first = 0, None               # newest of the last acknowledgement; when something asked first since
+        self.told, self.eliciting_first = 0, None           # newest of the last acknowledgement; when the first ack-eliciting one came since
         self.told_changed = False                           # one below it was accepted since
         self.fates: list[bool] = []                         # whether numbers were lost, as far as it is known
 
@@ -52,13 +52,13 @@ class ServedEpoch(Epoch):
 
     def wait_from(self, now: int) -> int:
         """Section 4: long where the path of a device is known, while all is well."""
-        self.asked_first = now if self.asked_first is None else self.asked_first
+        self.eliciting_first = now if self.eliciting_first is None else self.eliciting_first
         well = not self.told_changed and all(n in self.accepted for n in range(self.told + 1, max(self.accepted) + 1))
         loss = sum(self.fates[-256:]) / max(128, len(self.fates[-256:]))
-        return self.asked_first + DRIVEN_PATIENCE if self.path and well and loss <= 0.01 else now + self.patience
+        return self.eliciting_first + DRIVEN_PATIENCE if self.path and well and loss <= 0.01 else now + self.patience
 
     def acknowledgement(self, now: int) -> bytes:
-        self.told, self.asked_first, self.told_changed = max(self.accepted), None, False
+        self.told, self.eliciting_first, self.told_changed = max(self.accepted), None, False
         return super().acknowledgement(now)
 
     def find_lost(self, now: int, newest: int, there: set[int]) -> None:
@@ -110,7 +110,7 @@ class ServedEpoch(Epoch):
             self.buttons = elements
 
     def decode(self, now: int, number: int, packet: bytes) -> bool:
-        """False also for a packet that comes too late to act (65, section 4)."""
+        """False also for a packet that comes too late to take effect (65, section 4)."""
         if not super().decode(now, number, packet):
             return False
         if not self.path or number in self.path.states:
@@ -147,15 +147,15 @@ class ServedEpoch(Epoch):
 class Connection:
     def __init__(self, peer: int, client: int, role: int, nonce: int, limits: tuple[int, int]):
         self.peer, self.client, self.role, self.nonce, self.limits = peer, client, role, nonce, limits
-        self.proven = self.repeats_welcome = self.outdated = False
+        self.validated = self.repeats_welcome = self.outdated = False
         self.faults = 0                                     # datagrams that broke a rule
         self.epoch: ServedEpoch
         self.token = 0                                      # the first epoch
         self.serial = self.welcome_at = 0
 
     def begin(self, server: Server, epoch: int, now: int) -> None:
-        self.serial += 1 if self.proven else 0
-        self.repeats_welcome, self.outdated = self.proven, False
+        self.serial += 1 if self.validated else 0
+        self.repeats_welcome, self.outdated = self.validated, False
         self.welcome_at = now
         self.epoch = ServedEpoch(epoch, self.client, self.serial, len(server.declaration), fnv1a(server.declaration), server.start)
         self.token = self.token or epoch
@@ -178,7 +178,7 @@ class Server:
         self.connections: list[Optional[Connection]] = [None] * clients
         self.epochs = epochs
         self.says: list[tuple[int, bytes]] = []
-        self.gone: dict[int, Connection] = {}               # by number: their leaves are not sent yet
+        self.closed: dict[int, Connection] = {}               # by number: their leaves are not sent yet
         self.left: list[tuple[int, int]] = []
         self.serve(declaration, now)
 
@@ -194,7 +194,7 @@ class Server:
         for c in self.there():
             if not self.fits(c.limits):
                 self.end(c, TOO_LARGE, says=True)
-            elif c.proven:
+            elif c.validated:
                 c.begin(self, next(self.epochs), now)
             else:
                 c.outdated = True
@@ -202,8 +202,8 @@ class Server:
     def end(self, c: Connection, reason: int, says: bool) -> None:
         self.connections[c.client] = None
         self.left.append((c.client, reason))
-        if says and c.proven:
-            self.gone[c.client] = c
+        if says and c.validated:
+            self.closed[c.client] = c
             self.says += [(c.peer, sealed(head(HANDSHAKE, LEAVE) + bytes([reason]), c.epoch.epoch, DOWN))] * 3
 
     def let_go(self, client: int, reason: int) -> None:
@@ -233,7 +233,7 @@ class Server:
         if form == HANDSHAKE or form > PACKET:
             require(form == HANDSHAKE and value == LEAVE, "invalid", "R-SES-2")
             reason = reason_of(Cursor(datagram, 2, len(datagram) - 4))
-            c.proven = True
+            c.validated = True
             self.end(c, reason, says=False)
             return
         try:
@@ -245,7 +245,7 @@ class Server:
         self.has_spoken(c, now)
 
     def has_spoken(self, c: Connection, now: int) -> None:
-        c.proven, c.repeats_welcome = True, False
+        c.validated, c.repeats_welcome = True, False
         if c.outdated:
             c.begin(self, next(self.epochs), now)
 
@@ -266,15 +266,15 @@ class Server:
             return
         if c:
             self.end(c, BYE, says=False)
-        c = c or next((self.gone[i] for i in sorted(self.gone) if self.gone[i].peer == peer), None)
-        free = [c.client] if c else [i for i, there in enumerate(self.connections) if not there and i not in self.gone]
+        c = c or next((self.closed[i] for i in sorted(self.closed) if self.closed[i].peer == peer), None)
+        free = [c.client] if c else [i for i, there in enumerate(self.connections) if not there and i not in self.closed]
         if not self.fits((state_limit, header_limit)):
             self.refuse(peer, nonce, TOO_LARGE)
         elif not free:
             self.refuse(peer, nonce, FULL)
         else:
             place = free[0]
-            if self.gone.pop(place, None):                  # it need not be told any more
+            if self.closed.pop(place, None):                  # it need not be told any more
                 self.says = [item for item in self.says if item[0] != peer]
             c = self.connections[place] = Connection(peer, place, role, nonce, (state_limit, header_limit))
             c.begin(self, next(self.epochs), now)
@@ -298,18 +298,18 @@ class Server:
 
     def pass_time(self, now: int) -> None:
         for c in self.there():
-            if now >= c.epoch.heard_at + (MOST_SILENCE if c.proven else UNPROVEN):
+            if now >= c.epoch.heard_at + (MOST_SILENCE if c.validated else UNVALIDATED):
                 self.end(c, SILENCE, says=True)
 
     def poll(self, now: int) -> Iterator[tuple[int, bytes]]:
         """What is to be sent now, and to whom."""
         yield from self.says
-        self.says, self.gone = [], {}
+        self.says, self.closed = [], {}
         for c in self.there():
             if c.repeats_welcome and now >= c.welcome_at:
                 c.welcome_at = now + WELCOME_EVERY
                 yield c.peer, c.welcome()
-            if c.proven:
+            if c.validated:
                 for datagram in c.epoch.poll(now):
                     yield c.peer, datagram
 

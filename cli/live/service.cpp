@@ -165,7 +165,7 @@ void Service::look_after_seats(std::uint64_t now) {
   for (std::uint16_t client = 0; client < sessions_.clients(); ++client) {
     const ClientStatus status = sessions_.status(client);
     if (status.state != SessionState::live) continue;
-    tell_widening(status, now);
+    tell_bound_scale(status, now);
     if (status.role == Role::participant && silence_of(client, now) <= kFresh) give_seat(status, now);
   }
 }
@@ -273,8 +273,8 @@ void Service::tell(const ServerEvent& event, std::uint64_t now) {
           told_[event.client].is_removed ? "its user is removed, or has another key" : cli::name_of(event.reason);
       return tell(event.client, now, "left", fmt::format("is gone: {}", reason), {{"reason", reason}});
     }
-    case ServerEvent::Kind::widened:
-      told_[event.client].widened_at = now;
+    case ServerEvent::Kind::bounds_scaled:
+      told_[event.client].scaled_at = now;
       return;
     case ServerEvent::Kind::refused:
       return;
@@ -325,14 +325,14 @@ void Service::describe(ServerFigures& out) {
   if (const auto seal = wire_.seal()) out.seal = seal->counters;
 }
 
-void Service::tell_widening(const ClientStatus& status, std::uint64_t now) {
+void Service::tell_bound_scale(const ClientStatus& status, std::uint64_t now) {
   Told& told = told_[status.client];
-  if (status.widening == told.widening || now < told.widened_at + kLasting) return;
-  told.widening = status.widening;
-  tell(status.client, now, "widened",
-       status.widening == 1 ? std::string("has the bounds that were asked for again")
-                            : fmt::format("gets bounds {:.3g} times as wide: its network does not carry more", status.widening),
-       {{"widening", status.widening}});
+  if (status.bound_scale == told.bound_scale || now < told.scaled_at + kLasting) return;
+  told.bound_scale = status.bound_scale;
+  tell(status.client, now, "bounds_scaled",
+       status.bound_scale == 1 ? std::string("has the bounds that were asked for again")
+                            : fmt::format("gets bounds {:.3g} times as wide: its network does not carry more", status.bound_scale),
+       {{"bound_scale", status.bound_scale}});
 }
 
 }  // namespace tactus::cli

@@ -52,8 +52,8 @@ class Service {
   };
   /// What the operator was told of a client.
   struct Told {
-    double widening = 1;
-    std::uint64_t widened_at = 0;  // [us] since when it is another one
+    double bound_scale = 1;
+    std::uint64_t scaled_at = 0;  // [us] since when it is another one
     bool looks_on = false;
     std::optional<WireUser> user;  // nothing: there are no keys
     bool is_removed = false;       // from the keys
@@ -74,7 +74,7 @@ class Service {
   void tell(const ServerEvent& event, std::uint64_t now);
   void tell_refusal(LeaveReason reason, std::uint64_t now);
   void tell_held(std::int64_t tick, std::uint64_t now);
-  void tell_widening(const ClientStatus& status, std::uint64_t now);
+  void tell_bound_scale(const ClientStatus& status, std::uint64_t now);
   void tell(std::uint16_t client, std::uint64_t now, const char* event, const std::string& text, Json fields = Json::object());
   void look_at_keys(std::uint64_t now);
   void look_at_floods(std::uint64_t now);

@@ -46,7 +46,7 @@ constexpr std::uint32_t kMostHeader = 8192;                       // [bytes] of 
 constexpr std::size_t kMostHeard = 125;                           // [bytes] of a message from an observer
 constexpr int kSystemBuffer = 1 << 17;                            // [bytes] what the system may hold beside that
 constexpr std::size_t kMostWaiting = 90, kMostBytes = 16U << 20;  // messages and bytes for one observer: three seconds
-// For a request, for the page to be taken, and without a sign of life.
+// For a request, for the page to be taken, and without a keep-alive.
 constexpr auto kPatience = 5s, kPagePatience = 15s, kIdle = 20s;
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
@@ -134,7 +134,7 @@ class Observer : public std::enable_shared_from_this<Observer> {
   }
 
  private:
-  /// For signs of life and the end; an observer has nothing to say.
+  /// For keep-alives and the end; an observer has nothing to send.
   void listen() {
     stream_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
       if (error) return self->door_.leave(self.get());

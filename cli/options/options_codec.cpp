@@ -126,7 +126,7 @@ void TriggerArguments::check_bound(const Option& option, const PoseBound& bound)
 
 void TriggerArguments::add_encoder_to(Command& app) {
   options_.push_back(add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time,
-                                  "An object that was not sent for this long is sent again, as a sign of life; 0: never [1s]")
+                                  "An object that was not sent for this long is sent again, as a keep-alive; 0: never [1s]")
                          ->check(within(Dimension::time, "0s", "3600s")));
   options_.push_back(add_quantity(app, "--key-interval", key_interval_, Dimension::time,
                                   "Time between key packets, at which decoding can start; 0: the first only [5s]")

@@ -112,7 +112,7 @@ inline TrafficLayers sent_layers(const Traffic& traffic, double seconds, std::si
 /// One direction: what an end sent, and what the network did to it.
 struct DirectionReport {
   Traffic traffic{};                                                ///< of the end that sends
-  std::uint64_t sent = 0, lost = 0, duplicated = 0, overtaken = 0;  ///< datagrams
+  std::uint64_t sent = 0, lost = 0, duplicated = 0, reordered = 0;  ///< datagrams
 };
 
 struct NetworkReport {
@@ -126,7 +126,7 @@ struct NetworkReport {
   StepTimes shapes{}, poses{},
       compensation{};  ///< what the client computed for its user, per tick; empty: there is nothing of it
   SessionStatus status{};
-  Widening widened{};  ///< of the bounds, by the server
+  BoundScaling bound_scaling{};  ///< of the bounds, by the server
   DirectionReport up{}, down{};
 };
 
@@ -280,7 +280,7 @@ Value stream_value(const Report& report);  ///< pre  it has a stream
 Value bounds_value(const RigidTriggers& bounds);
 /// in   promised  false: the bounds only decide what is sent
 Value mesh_bounds_value(const DeformableThresholds& bounds, std::uint8_t rings, bool promised);
-Value widening_value(const Widening& widened);
+Value bound_scaling_value(const BoundScaling& scaling);
 
 /// {"error": ...}, schema error.json
 std::string error_json(const Failure& failure);

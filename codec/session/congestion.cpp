@@ -193,7 +193,7 @@ void Congestion::begin(std::uint64_t now) noexcept {
   was_held_ = answered_ = waits_ = narrowed_ = false;
 }
 
-double Congestion::widening() const noexcept { return std::exp2(0.5 * steps_); }
+double Congestion::bound_scale() const noexcept { return std::exp2(0.5 * steps_); }
 
 /// Of time, as ticks may be of any length.
 Congestion::Period Congestion::judge() noexcept {
@@ -232,7 +232,7 @@ bool Congestion::tick(bool held, bool shapes, std::uint64_t now) noexcept {
   was_held_ = held;
   if (now < since_ + kPeriod) return false;
   const bool changes = step(judge());
-  so_far_.widest = std::max(so_far_.widest, widening());
+  so_far_.largest = std::max(so_far_.largest, bound_scale());
   since_ = now;
   ticks_ = held_ = waits_begun_ = shapes_ = left_out_ = 0;
   answered_ = false;

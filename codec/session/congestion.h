@@ -147,7 +147,7 @@ class LineRate {
 };
 
 // ==== congestion ====
-// How far the bounds widen while the rate to a client does not carry what they ask for. spec/70-session.md section 9. Internal to the
+// How far the bounds are scaled while the rate to a client does not carry what they ask for. spec/70-session.md section 9. Internal to the
 // library.
 
 /// Looks at half a second at a time: a step wider if what was held back waited for long, or many shapes were left out; a step narrower after
@@ -164,8 +164,8 @@ class Congestion {
   bool tick(bool held, bool shapes, std::uint64_t now) noexcept;
 
   bool waits() const noexcept { return waits_; }  ///< packets wait for their turn
-  double widening() const noexcept;               ///< factor of all bounds: 2^(steps / 2)
-  const Widening& so_far() const noexcept { return so_far_; }
+  double bound_scale() const noexcept;               ///< factor of all bounds: 2^(steps / 2)
+  const BoundScaling& so_far() const noexcept { return so_far_; }
 
  private:
   enum class Period : std::uint8_t { congested, busy, calm, unknown };
@@ -178,7 +178,7 @@ class Congestion {
   bool was_held_ = false, answered_ = false, waits_ = false;
   std::uint32_t calm_ = 0, patience_ = 1;  // periods: so far, before a step narrower
   bool narrowed_ = false;                  // by the last step, and nothing speaks against it so far
-  Widening so_far_;
+  BoundScaling so_far_;
 };
 
 }  // namespace tactus

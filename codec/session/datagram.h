@@ -86,7 +86,7 @@ struct PiecePart {
   std::span<const std::uint8_t> bytes;
 };
 
-/// How far the client is. It also keeps the session alive, and asks for an answer.
+/// How far the client is. It also keeps the session alive, and is ack-eliciting.
 struct StatePart {
   std::uint8_t live = 0;  ///< 1: it holds the declaration, and wants packets
 };

@@ -69,10 +69,10 @@ Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
     return true;
   }
   const bool drives = path && direction_ == Direction::down;
-  const Asks asks = std::holds_alternative<StatePart>(part)   ? drives ? Asks::soon : Asks::now
-                    : std::holds_alternative<ClockPart>(part) ? Asks::never
-                                                              : Asks::soon;
-  reading.asks = std::max(reading.asks, asks);
+  const AckTiming ack_timing = std::holds_alternative<StatePart>(part)   ? drives ? AckTiming::soon : AckTiming::now
+                    : std::holds_alternative<ClockPart>(part) ? AckTiming::never
+                                                              : AckTiming::soon;
+  reading.ack_timing = std::max(reading.ack_timing, ack_timing);
   if (const auto* fragment = std::get_if<FragmentPart>(&part)) {
     TACTUS_CHECK(take(*fragment, reading));
     return true;
@@ -172,7 +172,7 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
     return false;
   }
   const bool is_rigid = decoded->substream == 0;
-  if (is_of_deformable(*receiver->scene(), decoded->substream)) reading.asks = Asks::now;
+  if (is_of_deformable(*receiver->scene(), decoded->substream)) reading.ack_timing = AckTiming::now;
   if (is_rigid && number < std::min(rigid_heard_, reading.heard.number)) reading.heard.is_copy = true;
   if (!reading.heard.is_copy) reading.heard.oldest = std::min(reading.heard.oldest.value_or(decoded->tick), decoded->tick);
   took(*decoded, packet.size(), reading);
@@ -247,7 +247,7 @@ Result<void> Exchange::take(const FragmentPart& fragment, Reading& reading) noex
 
 void Exchange::finish(const Reading& reading) noexcept {
   if (!reading.complete) return;
-  received_.accept(reading.heard.number, reading.now, reading.asks, own_patience());
+  received_.accept(reading.heard.number, reading.now, reading.ack_timing, own_patience());
   if (receiver) receiver->skip_number(reading.heard.number);
 }
 
@@ -312,7 +312,7 @@ bool Exchange::misses_layers(std::uint64_t now) const noexcept {
 
 /// Nothing was acknowledged for long.
 bool Exchange::is_cut_off(std::uint64_t now) const noexcept {
-  return asked_ > sent_.highest_acknowledged() && now > progress_at_ + std::max(kSilence, 4 * patience());
+  return eliciting_ > sent_.highest_acknowledged() && now > progress_at_ + std::max(kSilence, 4 * patience());
 }
 
 std::uint64_t Exchange::next_send(std::uint64_t wanted) const noexcept {
@@ -423,17 +423,17 @@ const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
   return resends_->next(now, latest());
 }
 
-/// [us] when the newest datagram that asks counts as lost: none after it would tell.
+/// [us] when the newest ack-eliciting datagram counts as lost: none after it would tell.
 std::optional<std::uint64_t> Exchange::tail_due() const noexcept {
-  if (!copies_rigid() || !sent_.round_trip() || asked_ <= sent_.highest_acknowledged()) return std::nullopt;
-  return std::max(asked_at_, tail_at_) + patience();
+  if (!copies_rigid() || !sent_.round_trip() || eliciting_ <= sent_.highest_acknowledged()) return std::nullopt;
+  return std::max(eliciting_at_, tail_at_) + patience();
 }
 
 void Exchange::watch_tail(std::uint64_t now) noexcept {
   const auto due = tail_due();
   if (!due || now < *due) return;
   tail_at_ = now;
-  lose(asked_, now);
+  lose(eliciting_, now);
 }
 
 void Exchange::want_key(std::uint64_t now) noexcept {
@@ -497,16 +497,16 @@ bool Exchange::add_packets(std::uint64_t number, std::uint64_t now) noexcept {
   return added;
 }
 
-std::span<const std::uint8_t> Exchange::end(std::uint64_t now, bool asks) noexcept {
+std::span<const std::uint8_t> Exchange::end(std::uint64_t now, bool is_eliciting) noexcept {
   const std::uint64_t number = *sent_.next();
-  asks = add_packets(number, now) || asks;
-  asks = add_copies(number, now) || asks;
+  is_eliciting = add_packets(number, now) || is_eliciting;
+  is_eliciting = add_copies(number, now) || is_eliciting;
   if (writer_.empty()) {  // all were too large
     skip_number(now);
     return {};
   }
-  if (asks && asked_ <= sent_.highest_acknowledged()) progress_at_ = now;
-  if (asks) asked_ = number, asked_at_ = now;
+  if (is_eliciting && eliciting_ <= sent_.highest_acknowledged()) progress_at_ = now;
+  if (is_eliciting) eliciting_ = number, eliciting_at_ = now;
   sent_.send(now);
   sent_at_ = now;
   const auto datagram = writer_.finish(epoch_);

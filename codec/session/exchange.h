@@ -94,8 +94,8 @@ class Exchange {
     if (!wanted && !has_packets() && !is_acknowledgement_due(now) && !next_copy(now)) return std::nullopt;
     const auto number = begin(now, wanted);
     if (!number) return std::nullopt;
-    const bool asks = extras(writer_, *number);
-    const auto datagram = end(now, asks);
+    const bool is_eliciting = extras(writer_, *number);
+    const auto datagram = end(now, is_eliciting);
     return datagram.empty() ? std::nullopt : std::optional(datagram);
   }
 
@@ -110,9 +110,9 @@ class Exchange {
   std::uint64_t sent_at() const noexcept { return sent_at_; }    ///< [us] when the last one went
   /// [us] since when an answer is missing; nothing: none is
   std::optional<std::uint64_t> unanswered() const noexcept {
-    return asked_ > sent_.highest_acknowledged() ? std::optional(progress_at_) : std::nullopt;
+    return eliciting_ > sent_.highest_acknowledged() ? std::optional(progress_at_) : std::nullopt;
   }
-  std::uint64_t asked_at() const noexcept { return asked_at_; }  ///< [us] when the last one went that must be acknowledged
+  std::uint64_t eliciting_at() const noexcept { return eliciting_at_; }  ///< [us] when the last one went that must be acknowledged
   void hold_tick() noexcept { ++traffic_.ticks_held; }           ///< instead of submit(): nothing may be sent
   void set_waits(bool waits) noexcept;                           ///< packets wait for their turn
   const SentNumbers& sent() const noexcept { return sent_; }
@@ -135,7 +135,7 @@ class Exchange {
   struct Reading {
     Heard heard;
     std::uint64_t now = 0;
-    Asks asks = Asks::never;
+    AckTiming ack_timing = AckTiming::never;
     bool complete = true;  // all packets in it are decoded, or its fragment is kept
   };
   struct PacketName {
@@ -192,7 +192,7 @@ class Exchange {
   const Resends::Kept* next_copy(std::uint64_t now) noexcept;
   bool add_copies(std::uint64_t number, std::uint64_t now) noexcept;
   bool add_copy(const Resends::Kept& copy, std::uint64_t number) noexcept;
-  std::span<const std::uint8_t> end(std::uint64_t now, bool asks) noexcept;
+  std::span<const std::uint8_t> end(std::uint64_t now, bool is_eliciting) noexcept;
 
   Direction direction_;
   unsigned timeouts_ = 0;  // of pieces, since the last that arrived
@@ -211,15 +211,15 @@ class Exchange {
   bool repairs_ = false, repaired_ = true, waits_ = false;
   bool fixed_playout_ = false;       // by its user: known before the first packet
   std::uint64_t playout_ = 0;        // [us] of the client
-  std::uint64_t tail_at_ = 0;        // [us] when the newest datagram that asks was last taken for lost
+  std::uint64_t tail_at_ = 0;        // [us] when the newest ack-eliciting datagram was last taken for lost
   bool wants_chain_ = false;         // packets of rigid objects must begin anew
   std::uint64_t chain_at_ = 0;       // [us] when they did
   std::span<const Packet> packets_;  // of the last submit()
   std::size_t next_packet_ = 0, next_fragment_ = 0;
   std::uint64_t heard_at_, sent_at_;
-  std::uint64_t asked_at_ = 0;       // [us] when a datagram went that asks for an acknowledgement
-  std::uint64_t asked_ = 0;          // highest number that asks
-  std::uint64_t progress_at_ = 0;    // [us] when one was acknowledged, or the first asked
+  std::uint64_t eliciting_at_ = 0;       // [us] when it went
+  std::uint64_t eliciting_ = 0;          // highest ack-eliciting number
+  std::uint64_t progress_at_ = 0;    // [us] when one was acknowledged, or the first ack-eliciting one went
   std::uint64_t layered_ = 0;        // highest number that brings a layer of a mesh
   bool wants_key_ = false;           // a layer is lost
   std::uint64_t key_wanted_at_ = 0;  // [us]

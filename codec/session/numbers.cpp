@@ -129,23 +129,23 @@ Result<std::uint64_t> ReceivedNumbers::extend(std::uint16_t wire) const noexcept
   return number;
 }
 
-void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, Asks asks, const Patience& patience) noexcept {
+void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, AckTiming timing, const Patience& patience) noexcept {
   if (accepted_.is_too_old(number)) return;
   if (number > accepted_.newest()) newest_at_ = now;
   accepted_.add(number);
   if (number > told_) ++above_told_;
   else changes_told_ = true;
   const bool full = ++untold_ >= kUntold;
-  if (asks == Asks::never && !full) return;
-  const std::uint64_t usual = asks == Asks::now || full ? now : now + patience.usual;
-  if (!asked_at_) asked_at_ = now;
+  if (timing == AckTiming::never && !full) return;
+  const std::uint64_t usual = timing == AckTiming::now || full ? now : now + patience.usual;
+  if (!eliciting_at_) eliciting_at_ = now;
   const bool is_well = usual > now && !changes_told_ && above_told_ == accepted_.newest() - told_;
-  due_ = is_well ? *asked_at_ + patience.all_is_well : std::min(due_.value_or(usual), usual);
+  due_ = is_well ? *eliciting_at_ + patience.all_is_well : std::min(due_.value_or(usual), usual);
 }
 
 Acknowledgement ReceivedNumbers::acknowledge(std::uint64_t now) noexcept {
   due_.reset();
-  asked_at_.reset();
+  eliciting_at_.reset();
   told_ = accepted_.newest();
   above_told_ = 0;
   changes_told_ = false;

@@ -159,10 +159,10 @@ class NumberWindow {
 };
 
 /// When a datagram is to be acknowledged.
-enum class Asks : std::uint8_t {
+enum class AckTiming : std::uint8_t {
   never,  ///< it holds nothing but acknowledgements and clocks
   soon,
-  now,  ///< a sign of life
+  now,  ///< a keep-alive
 };
 
 class ReceivedNumbers {
@@ -180,7 +180,7 @@ class ReceivedNumbers {
   };
   /// A received datagram, all of whose packets are decoded, is to be acknowledged.
   /// in   now  [us]
-  void accept(std::uint64_t number, std::uint64_t now, Asks asks, const Patience& patience) noexcept;
+  void accept(std::uint64_t number, std::uint64_t now, AckTiming timing, const Patience& patience) noexcept;
 
   bool has_news() const noexcept { return due_.has_value(); }
   /// [us] when an acknowledgement should go even if nothing else does
@@ -195,7 +195,7 @@ class ReceivedNumbers {
   NumberWindow received_, accepted_;
   unsigned untold_ = 0;                          // accepted since the last acknowledgement
   std::uint64_t newest_at_ = 0;                  // [us] when accepted_.newest() came
-  std::optional<std::uint64_t> due_, asked_at_;  // asked_at_: by the first that asks since the last acknowledgement
+  std::optional<std::uint64_t> due_, eliciting_at_;  // eliciting_at_: of the first ack-eliciting one since the last acknowledgement
   std::uint64_t told_ = 0, above_told_ = 0;      // newest of the last acknowledgement; how many above it were accepted
   bool changes_told_ = false;                    // one below it was accepted since
 };

@@ -14,7 +14,7 @@ constexpr std::uint64_t kWelcomeEvery = 250'000;                             // 
 constexpr std::uint64_t kClockEvery = 100'000, kDrivenClockEvery = 500'000;  // [us]
 constexpr std::uint64_t kPieceLag = 2'000;                                   // [us] of pieces that may be made up for
 constexpr std::uint64_t kJammedEvery = 50'000;                               // [us]: packets through a long queue
-constexpr std::uint64_t kUnproven = 10'000'000;                              // [us] for the first datagram in the epoch
+constexpr std::uint64_t kUnvalidated = 10'000'000;                              // [us] for the first datagram in the epoch
 constexpr unsigned kMostFaults = 100;
 constexpr unsigned kLeaves = 3;  // one of them should arrive
 
@@ -23,15 +23,15 @@ constexpr unsigned kLeaves = 3;  // one of them should arrive
 ServerConnection::ServerConnection(std::uint16_t client, const SessionServerOptions& options, std::uint64_t& pieces_at) noexcept
     : client_(client),
       loss_(options.loss),
-      trusts_(options.addresses_are_proven),
+      trusts_(options.addresses_are_validated),
       works_elsewhere_(options.works_elsewhere),
       silence_(options.silence),
       headers_(options.headers),
       piece_time_(options.rate == 0 ? 0 : 8'000'000 * (kLargestDatagram + options.headers) / options.rate),
-      most_widening_(options.widening),
+      max_bound_scale_(options.max_bound_scale),
       most_rate_(options.rate),
       bucket_(options.rate),
-      congestion_(options.widening),
+      congestion_(options.max_bound_scale),
       pieces_at_(pieces_at) {}
 
 void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedScene& served, std::uint64_t epoch,
@@ -39,11 +39,11 @@ void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedSc
   state_ = *next_state(server_transitions(), SessionState::closed, SessionEvent::open);
   peer_ = peer;
   join_ = said;
-  proven_ = repeats_welcome_ = outdated_ = false;
+  validated_ = repeats_welcome_ = outdated_ = false;
   left_.reset();
   leaves_ = faults_ = 0;
   wrong_states_ = 0;
-  congestion_ = Congestion(most_widening_);
+  congestion_ = Congestion(max_bound_scale_);
   welcome_.serial = 0;
   token_ = epoch;
   seat_ = 0;
@@ -51,7 +51,7 @@ void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedSc
 }
 
 void ServerConnection::begin_epoch(const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept {
-  const bool replaces = proven_;
+  const bool replaces = validated_;
   outdated_ = false;
   state_ = next_state(server_transitions(), state_, SessionEvent::replaced).value_or(state_);
   served_ = served;
@@ -92,7 +92,7 @@ bool ServerConnection::leave(SessionEvent event, LeaveReason reason) noexcept {
   if (!next) return false;
   state_ = *next;
   leaving_ = reason;
-  leaves_ = event != SessionEvent::left && proven_ ? kLeaves : 0;
+  leaves_ = event != SessionEvent::left && validated_ ? kLeaves : 0;
   if (leaves_ == 0) peer_ = 0;
   return true;
 }
@@ -105,12 +105,12 @@ bool ServerConnection::is_mine(std::span<const std::uint8_t> datagram) const noe
 bool ServerConnection::is_at_fault() const noexcept { return faults_ >= kMostFaults; }
 
 bool ServerConnection::is_silent(std::uint64_t now) const noexcept {
-  return state_ != SessionState::closed && now >= exchange_->heard_at() + (proven_ ? silence_ : kUnproven);
+  return state_ != SessionState::closed && now >= exchange_->heard_at() + (validated_ ? silence_ : kUnvalidated);
 }
 
 Result<void> ServerConnection::handle_datagram(std::uint64_t now, std::span<const std::uint8_t> datagram) noexcept {
   auto said = read_datagram(datagram, Direction::up);
-  if (said) proven_ = true;
+  if (said) validated_ = true;
   if (!said) {
     ++faults_;
     return tl::unexpected(said.error());
@@ -176,7 +176,7 @@ void ServerConnection::look() noexcept {
     const RigidState& device = exchange_->receiver->object(0);
     places[count++] = to_pose({device.position, device.rotation}, served_.device->grid.position).position;
   }
-  exchange_->sender->look_from(std::span(places).first(count));
+  exchange_->sender->set_viewpoints(std::span(places).first(count));
 }
 
 /// Before it is live a client knows only a delay that its user has fixed: it must be long enough for a copy.
@@ -288,7 +288,7 @@ Result<void> ServerConnection::submit(std::uint64_t now, std::int64_t tick, cons
   if (line_.rate() > 0) bucket_.set_rate(most_rate_ == 0 ? line_.rate() : std::min(line_.rate(), most_rate_), now);
   else bucket_.set_rate(most_rate_, now);
   const bool shapes = std::ranges::any_of(truth.deformables, [](const auto& shape) { return !shape.displacements.empty(); });
-  if (congestion_.tick(held_, shapes, now)) exchange_->sender->set_widening(widening());
+  if (congestion_.tick(held_, shapes, now)) exchange_->sender->set_bound_scale(bound_scale());
   exchange_->set_waits(congestion_.waits());
   if (held_) {
     exchange_->hold_tick();
@@ -302,7 +302,7 @@ Result<void> ServerConnection::submit(std::uint64_t now, std::int64_t tick, cons
 
 /// [us] When the next piece may go; nothing: there is none that may.
 std::optional<std::uint64_t> ServerConnection::piece_due() const noexcept {
-  if (!(proven_ || trusts_) || !exchange_->pieces || !exchange_->pieces->next()) return std::nullopt;
+  if (!(validated_ || trusts_) || !exchange_->pieces || !exchange_->pieces->next()) return std::nullopt;
   return exchange_->next_send(std::max(piece_at_, pieces_at_));
 }
 
@@ -381,7 +381,7 @@ void ServerConnection::add_seat(DatagramWriter& writer, std::uint64_t number, st
 
 std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
   if (state_ == SessionState::closed) return std::nullopt;
-  std::uint64_t due = exchange_->heard_at() + (proven_ ? silence_ : kUnproven);
+  std::uint64_t due = exchange_->heard_at() + (validated_ ? silence_ : kUnvalidated);
   if (repeats_welcome_ && state_ == SessionState::receiving) due = std::min(due, welcome_at_);
   if (held_ || !exchange_->sent().next()) return due;  // nothing else may be said, or there is no number left
   if (const auto acknowledgement = exchange_->due()) due = std::min(due, *acknowledgement);
@@ -421,8 +421,8 @@ ClientStatus ServerConnection::status() const noexcept {
                    .heard = 0,
                    .round_trip = {},
                    .loss = 0,
-                   .widening = widening(),
-                   .widened = congestion_.so_far(),
+                   .bound_scale = bound_scale(),
+                   .bound_scaling = congestion_.so_far(),
                    .traffic = {}};
   if (!exchange_) return out;
   out.heard = exchange_->heard_at();

@@ -70,8 +70,8 @@ class ServerConnection {
   bool is_outdated() const noexcept { return outdated_; }
   /// A new scene waits until the client has spoken in the epoch that it was welcomed to: no other welcome can reach it before.
   void outdate() noexcept { outdated_ = true; }
-  bool needs_epoch() const noexcept { return outdated_ && proven_ && state_ != SessionState::closed; }
-  bool is_proven() const noexcept { return proven_; }
+  bool needs_epoch() const noexcept { return outdated_ && validated_ && state_ != SessionState::closed; }
+  bool is_validated() const noexcept { return validated_; }
   /// A new scene.   pre  open
   void begin_epoch(const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
   /// Go, if the state permits it. Unless the client has left or may not be there at all, it is told.
@@ -93,7 +93,7 @@ class ServerConnection {
 
   /// in   hashes  objects whose states may be hashed in this tick, for all clients: it takes 50 ns each.   pre  live
   Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth, std::size_t& hashes) noexcept;
-  double widening() const noexcept { return congestion_.widening(); }
+  double bound_scale() const noexcept { return congestion_.bound_scale(); }
   std::optional<std::span<const std::uint8_t>> poll(std::uint64_t now) noexcept;
   std::optional<std::uint64_t> next_timeout() const noexcept;
 
@@ -137,8 +137,8 @@ class ServerConnection {
   unsigned faults_ = 0;
   std::uint8_t seat_ = 0;
   bool held_ = false;    // the last tick was not sent
-  bool proven_ = false;  // it knows the epoch: the address is its own
-  bool trusts_;          // the transport has proven it before
+  bool validated_ = false;  // it knows the epoch: the address is its own
+  bool trusts_;          // the transport has validated it before
   bool works_elsewhere_;
   enum class Parts : std::uint8_t { none, wanted, asked };
   Parts parts_ = Parts::none;
@@ -149,7 +149,7 @@ class ServerConnection {
   bool seat_waits_ = false;                       // for an acknowledgement
   std::optional<LeaveReason> left_;               // said by the client
   std::uint64_t silence_, headers_, piece_time_;  // [us], [bytes] around a datagram, [us] of a piece at the rate
-  double most_widening_;
+  double max_bound_scale_;
   std::uint64_t peer_ = 0, token_ = 0;
   Join join_;
   Welcome welcome_;

@@ -17,7 +17,7 @@ namespace tactus {
 namespace {
 
 constexpr std::uint64_t kFirstRetry = 100'000, kRejoin = 250'000, kLastRetry = 2'000'000, kJoinFor = 10'000'000;  // [us]
-// [us] from one sign of life to the next: of a participant who feels something, over a network that loses or not; of another
+// [us] from one keep-alive to the next: of a participant who feels something, over a network that loses or not; of another
 // participant; of an observer while packets come, and at rest.
 constexpr std::uint64_t kFeltAtLoss = 12'000, kFelt = 25'000, kParticipant = 50'000, kServed = 100'000, kIdle = 1'000'000;
 constexpr std::uint64_t kMoving = 100'000;  // [us] the same, while the place moves that it looks from
@@ -57,7 +57,7 @@ struct SessionClient::Impl {
   Result<void> complete(std::uint64_t now) noexcept;
   void play(const Exchange::Heard& heard, std::uint64_t now) noexcept;
   bool is_stuck(std::uint64_t now) const noexcept;
-  std::uint64_t sign_due() const noexcept;
+  std::uint64_t keep_alive_due() const noexcept;
   std::uint64_t rejoin_due() const noexcept;
   bool has_buttons_due(std::uint64_t now) const noexcept;
   bool looks() const noexcept;
@@ -79,7 +79,7 @@ struct SessionClient::Impl {
   std::uint64_t woke_at = 0;       // [us] of the last after so long that what is known of the ways may be too old
   std::unique_ptr<Epoch> current;  // the newest
   std::unique_ptr<Epoch> shown;    // the one before, until the newest is live
-  std::uint64_t sign_at = 0;       // [us] of the last sign of life
+  std::uint64_t keep_alive_at = 0;       // [us] of the last keep-alive
   std::uint64_t live_number = 0;   // of the first datagram that said that the client is live; 0: none did yet
   std::uint64_t packet_at = 0;     // [us] of the last packet
   bool feels = false;              // the device is in contact
@@ -190,7 +190,7 @@ Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& sai
     seat = 0;
   }
   offset = {};
-  sign_at = live_number = 0;
+  keep_alive_at = live_number = 0;
   feels = rejoins = false;
   hash.reset();
   buttons = {};
@@ -286,26 +286,26 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
   go(SessionEvent::completed);
   view_said.reset();
   shown.reset();
-  sign_at = 0;
+  keep_alive_at = 0;
   note({.kind = ClientEvent::Kind::live});
   return {};
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
 
-/// When the next sign of life goes.
-std::uint64_t SessionClient::Impl::sign_due() const noexcept {
-  if (sign_at == 0) return 0;
+/// When the next keep-alive goes.
+std::uint64_t SessionClient::Impl::keep_alive_due() const noexcept {
+  if (keep_alive_at == 0) return 0;
   // Until the server knows that the client is live, it takes no packet of the device, and acknowledges none.
   if (state == SessionState::live && current->exchange.sent().highest_acknowledged() < live_number)
-    return current->exchange.next_send(sign_at + kParticipant);
-  const std::uint64_t sent = std::max(sign_at, current->exchange.asked_at());
+    return current->exchange.next_send(keep_alive_at + kParticipant);
+  const std::uint64_t sent = std::max(keep_alive_at, current->exchange.eliciting_at());
   const bool served = state == SessionState::receiving || sent < packet_at + kRecent;
   const std::uint64_t times = current->exchange.path ? kSeldom : 1;
   const std::uint64_t felt = current->exchange.sent().loss() > kSomeLoss ? kFeltAtLoss : times * kFelt;
   const std::uint64_t pause = feels ? felt : options.role == Role::participant ? times * kParticipant : served ? kServed : kIdle;
   const std::uint64_t due = current->exchange.next_send(sent + pause);
-  return has_moved() ? std::min(due, current->exchange.next_send(sign_at + kMoving)) : due;
+  return has_moved() ? std::min(due, current->exchange.next_send(keep_alive_at + kMoving)) : due;
 }
 
 /// The server asks for the place that the user looks from.
@@ -381,7 +381,7 @@ Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample
   return {};
 }
 
-void SessionClient::look_from(const Vec3& place) noexcept {
+void SessionClient::set_viewpoint(const Vec3& place) noexcept {
   std::array<std::int32_t, 3> view{};
   const std::array from{place.x, place.y, place.z};
   for (std::size_t i = 0; i < 3; ++i)
@@ -405,22 +405,22 @@ std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::u
     return in.writer.write(Join{in.options.role, in.nonce, limits.state_bytes, limits.header_bytes, in.token, in.options.seat});
   }
   if (joins) return std::nullopt;
-  const bool sign = now >= in.sign_due(), buttons = in.has_buttons_due(now);
-  return in.current->exchange.poll(now, sign || buttons, [&](DatagramWriter& writer, std::uint64_t number) {
+  const bool keep_alive = now >= in.keep_alive_due(), buttons = in.has_buttons_due(now);
+  return in.current->exchange.poll(now, keep_alive || buttons, [&](DatagramWriter& writer, std::uint64_t number) {
     if (in.buttons_wait) {
       writer.add(in.buttons);
       in.buttons_at = now + kButtonsEvery;
       if (in.buttons_number == 0) in.buttons_number = number;
     }
-    if (sign && in.current->playout) writer.add(in.report(now));
-    if (sign) {
+    if (keep_alive && in.current->playout) writer.add(in.report(now));
+    if (keep_alive) {
       writer.add(StatePart{static_cast<std::uint8_t>(in.state == SessionState::live ? 1 : 0)});
       if (in.state == SessionState::live && in.live_number == 0) in.live_number = number;
-      in.sign_at = now;
+      in.keep_alive_at = now;
     }
     if (in.hash) writer.add(*in.hash);
     in.hash.reset();
-    return sign || in.buttons_wait;
+    return keep_alive || in.buttons_wait;
   });
 }
 
@@ -438,7 +438,7 @@ std::optional<std::uint64_t> SessionClient::next_timeout() const noexcept {
   std::uint64_t due = in.current->exchange.heard_at() + in.options.silence;
   due = std::min(due, in.rejoin_due());
   if (!in.current->exchange.sent().next()) return due;  // there is no number left to say anything with
-  due = std::min(due, in.sign_due());
+  due = std::min(due, in.keep_alive_due());
   if (in.buttons_wait) due = std::min(due, in.current->exchange.next_send(in.buttons_at));
   if (const auto acknowledgement = in.current->exchange.due()) due = std::min(due, *acknowledgement);
   return due;

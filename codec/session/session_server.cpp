@@ -62,8 +62,8 @@ SessionServer::~SessionServer() = default;
 
 Result<SessionServer> SessionServer::create(SharedScene scene, const SessionServerOptions& options, std::uint64_t entropy,
                                             std::uint64_t now) try {
-  const bool widens = options.widening >= 1 && options.widening <= 64;  // false for NaN
-  if (options.clients == 0 || options.rate > 1'000'000'000'000 || !widens) return fail(Errc::invalid_argument, "R-API-4");
+  const bool scales = options.max_bound_scale >= 1 && options.max_bound_scale <= 64;  // false for NaN
+  if (options.clients == 0 || options.rate > 1'000'000'000'000 || !scales) return fail(Errc::invalid_argument, "R-API-4");
   auto impl = std::make_unique<Impl>();
   impl->options = options;
   impl->options.sender.policy.baseline = Baseline::acknowledged;
@@ -105,7 +105,7 @@ Result<void> SessionServer::replace_scene(SharedScene scene, std::uint64_t now) 
   for (auto& connection : impl_->connections) {
     if (connection->state() == SessionState::closed) continue;
     if (!impl_->served.fits(connection->join())) impl_->drop(*connection, SessionEvent::close, LeaveReason::limits);
-    else if (connection->is_proven()) connection->begin_epoch(impl_->served, draw(impl_->entropy), now);
+    else if (connection->is_validated()) connection->begin_epoch(impl_->served, draw(impl_->entropy), now);
     else connection->outdate();
   }
   return {};
@@ -113,15 +113,15 @@ Result<void> SessionServer::replace_scene(SharedScene scene, std::uint64_t now) 
   return out_of_memory();
 }
 
-/// The session of this address, or else one that is gone and whose leaves still go there.
+/// The session of this address, or else one that is closed and whose leaves still go there.
 ServerConnection* SessionServer::Impl::find(std::uint64_t peer) noexcept {
-  ServerConnection* gone = nullptr;
+  ServerConnection* closed = nullptr;
   for (std::size_t i = 0; i < peers.size(); ++i) {
     if (peers[i] != peer || connections[i]->peer() != peer) continue;
     if (connections[i]->state() != SessionState::closed) return connections[i].get();
-    if (gone == nullptr) gone = connections[i].get();
+    if (closed == nullptr) closed = connections[i].get();
   }
-  return gone;
+  return closed;
 }
 
 void SessionServer::Impl::drop(ServerConnection& connection, SessionEvent event, LeaveReason reason) noexcept {
@@ -238,10 +238,10 @@ Result<void> SessionServer::submit(std::uint64_t now, std::int64_t tick, const T
   std::size_t hashes = objects > kMostHashed ? 0 : std::max(kHashedObjects, objects);
   for (auto& connection : impl_->connections) {
     if (!is_live(connection)) continue;
-    const double before = connection->widening();
+    const double before = connection->bound_scale();
     if (const auto done = connection->submit(now, tick, truth, hashes); !done && first) first = done;
-    if (connection->widening() != before)
-      impl_->note({.kind = ServerEvent::Kind::widened, .client = connection->client(), .widening = connection->widening()});
+    if (connection->bound_scale() != before)
+      impl_->note({.kind = ServerEvent::Kind::bounds_scaled, .client = connection->client(), .bound_scale = connection->bound_scale()});
   }
   return first;
 }

@@ -34,8 +34,8 @@ struct ClientStatus {
   std::uint64_t heard = 0;                 ///< [us] when its newest datagram came
   std::optional<RoundTrip> round_trip;
   double loss = 0;      ///< share of the last 256 datagrams to the client
-  double widening = 1;  ///< factor of the bounds now
-  Widening widened;     ///< since it joined
+  double bound_scale = 1;  ///< factor of the bounds now
+  BoundScaling bound_scaling;  ///< since it joined
   Traffic traffic;
 };
 
@@ -45,13 +45,13 @@ struct ServerEvent {
     live,     ///< holds it
     left,     ///< for `reason`
     moved,    ///< its address is another one: ClientStatus::peer
-    widened,  ///< its bounds are multiplied by `widening` from now on
+    bounds_scaled,  ///< its bounds are multiplied by `bound_scale` from now on
     refused,  ///< joins, for `reason`; `client` is nobody
   };
   Kind kind = Kind::joined;
   std::uint16_t client = 0;
   LeaveReason reason = LeaveReason::bye;
-  double widening = 1;
+  double bound_scale = 1;
 };
 
 /// Threads: one at a time. No call on the way of a datagram allocates but those that bring a client live; none throws.

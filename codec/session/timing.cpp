@@ -11,7 +11,7 @@ namespace tactus {
 namespace {
 
 constexpr std::uint64_t kShortest = 3;        // datagrams in a burst
-constexpr std::uint64_t kStillMay = 100'000;  // [us]: what was overtaken by one that came so long ago comes no more
+constexpr std::uint64_t kStillMay = 100'000;  // [us]: what is reordered comes at most so long after a newer one
 
 }  // namespace
 
@@ -80,7 +80,7 @@ constexpr std::int64_t kAnswer = 10'000, kMargin = 10'000, kApart = 10'000;  // 
 constexpr std::uint32_t kLossy = 65536 / 333, kLossier = 65536 / 20, kLossiest = 65536 * 3 / 20;  // shares x 2^-16
 constexpr std::int64_t kLeastJitter = 20'000;                                                     // [us]
 constexpr std::int64_t kMostJitter = 50'000;  // [us] of round trips: what is above is a standstill or a queue
-constexpr std::uint64_t kOvertaken = 5'000;   // [us] that a packet waits for one that is not lost but late
+constexpr std::uint64_t kReordering = 5'000;   // [us] that a packet waits for one that is not lost but late
 constexpr std::uint64_t kSettle = 20'000;     // [us] in which an end that woke up takes what has waited
 
 constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }
@@ -151,7 +151,7 @@ std::int64_t PlayoutClock::answer() const noexcept {
 void PlayoutClock::waits(std::optional<std::uint64_t> since, std::uint64_t now) noexcept {
   waits_ = since.has_value();
   if (!waits_ || options_.fixed) return;
-  if (now > *since + std::max<std::uint64_t>(kOvertaken, static_cast<std::uint64_t>(late_ - least_)))
+  if (now > *since + std::max<std::uint64_t>(kReordering, static_cast<std::uint64_t>(late_ - least_)))
     delay_ = std::max(delay_, least_ + answer() + kApart);
 }
 

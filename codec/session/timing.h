@@ -220,7 +220,7 @@ class DevicePace {
   std::int64_t period_, margin_;  // [ticks]
   std::optional<std::int64_t> offset_;
   std::int64_t tick_ = 0;       // of the last step
-  std::int64_t least_ = kNone;  // [ticks] until a packet acts that came since the last change; 0 or less: too late
+  std::int64_t least_ = kNone;  // [ticks] until a packet takes effect that came since the last change; 0 or less: too late
   std::int64_t until_ = 0;      // before this tick the pace does not get faster
   std::array<Told, 8> told_{};  // a ring
   std::size_t next_ = 0, waiting_ = 0;

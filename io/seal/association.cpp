@@ -49,9 +49,9 @@ Cookies::Look Cookies::look(std::uint64_t now, std::span<const std::uint8_t> who
   for (Key* key : {&current_, &before_}) {
     gnutls_datum_t datum = datum_of(*key);
     const int found = gnutls_dtls_cookie_verify(&datum, untouched(who), who.size(), untouched(wire), wire.size(), &out.state);
-    if (found == GNUTLS_E_BAD_COOKIE) out.verdict = Verdict::unproven;
+    if (found == GNUTLS_E_BAD_COOKIE) out.verdict = Verdict::unvalidated;
     if (found != 0) continue;
-    out.verdict = Verdict::proven;
+    out.verdict = Verdict::validated;
     break;
   }
   return out;

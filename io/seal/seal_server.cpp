@@ -19,7 +19,7 @@ constexpr std::uint64_t kPatience =
 constexpr std::uint64_t kRepeatEvery = 50'000;  // [us] at most, also of alerts
 constexpr int kRepetitions = 3;                 // of what ends an association
 constexpr std::size_t kInbox = 4;               // datagrams of a handshake that wait
-constexpr std::size_t kAmplification = 3;       // to an address that has not proven itself
+constexpr std::size_t kAmplification = 3;       // to an address that is not validated
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -143,7 +143,7 @@ void Server::Impl::hear_hello(std::uint64_t now, const net::Address& from, std::
     ++counters.strangers;
     return;
   }
-  if (look.verdict == Cookies::Verdict::unproven) {
+  if (look.verdict == Cookies::Verdict::unvalidated) {
     const auto said = cookies->answer(from.bytes());
     if (said.empty() || said.size() > kAmplification * wire.size()) return;
     ++counters.cookies;

@@ -223,7 +223,7 @@ class World {
       TACTUS_TRY(auto client, SessionClient::create({.role = of_.role, .limits = kLimits}));
       users_.push_back({std::move(client), Way(of_, 1000 + 2 * number + of_.seed), Way(of_, 1001 + 2 * number + of_.seed)});
       User& user = users_.back();
-      if (of_.reach > 0) user.client.look_from(eyes(number));
+      if (of_.reach > 0) user.client.set_viewpoint(eyes(number));
       user.client.open(now_, number + 1);
       for (int k = 0; k < 60'000 && server_.status(static_cast<std::uint16_t>(number)).state != SessionState::live; ++k) {
         while (const auto datagram = user.client.poll_datagram(now_)) hear(number + 1, *datagram);
@@ -277,7 +277,7 @@ class World {
       ++datagrams_, bytes_ += sent.bytes.size();
     }
     for (User& user : users_) {
-      if (of_.reach > 0) user.client.look_from(eyes(static_cast<std::size_t>(&user - users_.data())));
+      if (of_.reach > 0) user.client.set_viewpoint(eyes(static_cast<std::size_t>(&user - users_.data())));
       while (const auto bytes = user.down.poll(now_)) static_cast<void>(user.client.handle_datagram(now_, *bytes));
       user.client.handle_timeout(now_);
       while (const auto datagram = user.client.poll_datagram(now_)) user.up.send(now_, *datagram);

@@ -16,7 +16,7 @@ namespace {
 using namespace tactus;
 
 /// Those of a level of detail.
-RigidTriggers widened(RigidTriggers t, std::uint8_t lod) {
+RigidTriggers scaled(RigidTriggers t, std::uint8_t lod) {
   for (double* bound : {&t.visual_position, &t.visual_rotation, &t.weber_fraction, &t.perceptual_share, &t.cone_angle,
                         &t.fixed_position, &t.fixed_rotation})
     *bound = std::ldexp(*bound, lod);
@@ -76,7 +76,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         path->add(static_cast<std::uint64_t>(tick) + 1, *device);
     if (rule >= 192) {  // below that the client never says
       const Vec3 place{0.1 * in.u8(), 0, 0};
-      sender->look_from({&place, in.u8() < 250 ? 1u : 0u});
+      sender->set_viewpoints({&place, in.u8() < 250 ? 1u : 0u});
     }
     const Pose before = to_pose(receiver.replica().pose(0, tick), scene->grid.position);
     const auto packets = sender->encode(tick, {.objects = {&next, 1}, .contacts = contacts});
@@ -95,7 +95,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(scene->interest.has_value() || lod == 0);
     const Vec3 way = sample.pose.position - before.position;  // longer ones than an update can name take two
     const bool is_near = std::abs(way.x) < 511 && std::abs(way.y) < 511 && std::abs(way.z) < 511;
-    if (lod != kOutOfInterest && is_near) check_bounds(widened(options.triggers, lod), receiver, tick, sample, contacts);
+    if (lod != kOutOfInterest && is_near) check_bounds(scaled(options.triggers, lod), receiver, tick, sample, contacts);
   }
   return 0;
 }

@@ -58,7 +58,7 @@ struct World {
   std::int64_t tick = 0;
   struct Peer {  // 1: the client's address, 2: the stranger's
     std::uint64_t epoch = 0, heard = 0, said = 0;
-    bool proven = false;
+    bool validated = false;
   };
   std::array<Peer, 3> peers{};
   Bytes up, down;  // the newest of each way
@@ -71,7 +71,7 @@ struct World {
   void to_server(std::uint64_t peer, Input bytes) {
     Peer& from = peers[peer];
     from.heard += bytes.size();
-    from.proven = from.proven || (from.epoch != 0 && is_of_epoch(bytes, from.epoch, Direction::up));
+    from.validated = from.validated || (from.epoch != 0 && is_of_epoch(bytes, from.epoch, Direction::up));
     static_cast<void>(server.handle_datagram(now, peer, bytes));
   }
   void drain(bool delivers) {
@@ -80,7 +80,7 @@ struct World {
       const auto said = read_datagram(datagram->bytes, Direction::down);
       require(said && datagram->bytes.size() <= kLargestDatagram);
       to.said += datagram->bytes.size();
-      require(to.proven || to.said <= to.heard);
+      require(to.validated || to.said <= to.heard);
       if (const auto* welcome = std::get_if<Welcome>(&*said)) to.epoch = welcome->epoch;
       if (datagram->peer != 1) continue;
       down.assign(datagram->bytes.begin(), datagram->bytes.end());

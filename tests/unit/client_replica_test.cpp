@@ -217,7 +217,7 @@ TEST(ClientPlayout, BendsOverKnownGapsOnly) {
   EXPECT_EQ(client.shown(600), client.reckoned(500, 600)) << "packet 5 is missing, for longer than 300 ms";
   EXPECT_EQ(client.shown(950), client.reckoned(900, 950)) << "the future is not known";
   client.take({3, 441});
-  EXPECT_EQ(client.shown(470), client.reckoned(441, 470)) << "it was only overtaken";
+  EXPECT_EQ(client.shown(470), client.reckoned(441, 470)) << "it was only reordered";
 }
 
 TEST(ClientPlayout, BeforeTheFirstUpdateTheInitialStateIsShown) {
@@ -250,7 +250,7 @@ TEST(ClientPlayout, ARestartForgetsWhatWasKnown) {
   EXPECT_EQ(client.shown(460), client.reckoned(30, 460));
 }
 
-TEST(ClientReplicaOrder, AnOvertakenUpdateIsNotShown) {
+TEST(ClientReplicaOrder, AReorderedUpdateIsNotShown) {
   for (const Interpolation way : {Interpolation::none, Interpolation::linear, Interpolation::hermite, Interpolation::blending}) {
     PlayoutReplica client(way), spared(way);
     for (PlayoutReplica* both : {&client, &spared}) {
@@ -399,7 +399,7 @@ TEST(HeardPackets, KnowsTheNewestThousand) {
   EXPECT_TRUE(heard.all_between(72500, 72501)) << "nothing is between";
   EXPECT_FALSE(heard.all_between(72500, 72508));
   heard.add(72507);
-  EXPECT_TRUE(heard.all_between(72500, 72999)) << "an overtaken packet";
+  EXPECT_TRUE(heard.all_between(72500, 72999)) << "a reordered packet";
   heard.add(72007);
   EXPECT_TRUE(heard.all_between(71975, 72999)) << "the oldest heard is 1023 back";
   EXPECT_FALSE(heard.all_between(71974, 72999));

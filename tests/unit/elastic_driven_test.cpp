@@ -181,8 +181,8 @@ TEST(DrivenShape, MakesAnewWhatHadAnotherPast) {
   int differed = 0;
   for (std::uint64_t number = 1; number <= 120; ++number) {
     const auto tick = static_cast<std::int64_t>(5 * number);
-    const bool acts = number % 7 != 0;
-    if (acts) known->add(number, device_at(*scene, tick, pressing(tick)));
+    const bool takes_effect = number % 7 != 0;
+    if (takes_effect) known->add(number, device_at(*scene, tick, pressing(tick)));
     told->add(number, device_at(*scene, tick, pressing(tick)));
     if (number < 20) continue;
     differed += body_at(learns, *scene, tick) != body_at(knows, *scene, tick) ? 1 : 0;

@@ -365,7 +365,7 @@ TEST(SealWrongKey, AForgedAlertEndsAndDelaysNothing) {
   quiet.run();
   disturbed.run();
   ASSERT_TRUE(disturbed.client.is_open());
-  EXPECT_FALSE(disturbed.client.is_doubted()) << "the server has proven itself";
+  EXPECT_FALSE(disturbed.client.is_doubted()) << "the server is authenticated";
   EXPECT_EQ(disturbed.now, quiet.now);
   EXPECT_EQ(sent.size(), 3u) << "no datagram more";
   for (int i = 0; i < 100; ++i) disturbed.down(alert);

@@ -233,7 +233,7 @@ TEST(SealServer, FloodsReachNobodyElse) {
   EXPECT_EQ(crowd.server.limited_of(1), 0u);
 }
 
-/// Who has proven an address can still make a server compare cookies, but not often; and comes in.
+/// Who has validated an address can still make a server compare cookies, but not often; and comes in.
 TEST(SealServer, AHandshakeIsFewDatagrams) {
   SealPair pair;
   Bytes with_cookie;

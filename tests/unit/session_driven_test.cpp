@@ -72,7 +72,7 @@ struct DeviceEnds {
   std::uint64_t now = kMillisecond;
 };
 
-/// Whatever is lost, late or overtaken: a round trip later the client knows where the device was for the server, to the bit.
+/// Whatever is lost, late or reordered: a round trip later the client knows where the device was for the server, to the bit.
 TEST(Driven, BothEndsKnowTheSamePath) {
   for (const double loss : {0.0, 0.05, 0.3}) {
     DeviceEnds ends(loss);

@@ -99,7 +99,7 @@ TEST(RepairedExchange, TheLastPacketBeforeAPauseGoesAgain) {
   ends.lose();
   const auto due = ends.server->due();
   ASSERT_TRUE(due);
-  EXPECT_EQ(*due, ends.server->asked_at() + ends.server->patience());
+  EXPECT_EQ(*due, ends.server->eliciting_at() + ends.server->patience());
   ends.now = *due - 1;
   EXPECT_TRUE(ends.drain(*ends.server).empty());
   ends.now = *due;

@@ -72,7 +72,7 @@ struct Desk {
   std::uint64_t now = kNow, number = 0;
 };
 
-TEST(ServerConnection, SendsNothingToAnAddressThatHasNotProvenItself) {
+TEST(ServerConnection, SendsNothingToAnAddressThatIsNotValidated) {
   Desk desk({}, 10);
   for (int i = 0; i < 9'999; ++i) {
     desk.now += 1000;

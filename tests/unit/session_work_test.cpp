@@ -231,7 +231,7 @@ TEST(SessionWork, WhatALiveClientHadIsHandedOut) {
   EXPECT_EQ(world.lives, 2);
 }
 
-/// Without memory the client stays where it is, and its next sign of life asks again.
+/// Without memory the client stays where it is, and its next keep-alive asks again.
 TEST(SessionWork, WithoutMemoryItIsAskedAgain) {
   World world(true, 1);
   std::optional<SessionServer::Work> first;
