@@ -126,11 +126,11 @@ class Sender {
   /// in  substream, sequence  as in Packet
   void acknowledge(std::size_t substream, std::uint16_t sequence) noexcept;
 
-  /// Report what the way to the receiver and back does. With Baseline::acknowledged the newest state of an object is sent again, made
+  /// Report what the link to the receiver and back does. With Baseline::acknowledged the newest state of an object is sent again, made
   /// anew, while no acknowledgement names a packet that held it; of a deformable object without layers, where packets get lost.
   void set_link(const LinkState& link) noexcept;
 
-  /// Multiply all bounds but the heartbeat, from the next tick on: less to send where the way does not carry what they ask for.
+  /// Multiply all bounds but the heartbeat, from the next tick on: less to send where the link does not carry what they ask for.
   /// in   factor  1 to 64; it is limited to these. 1: the bounds as given
   void set_bound_scale(double factor) noexcept;
 
@@ -145,7 +145,7 @@ class Sender {
   void forget_last(std::size_t substream) noexcept;
 
   /// Know the device of the one receiver, which may drive objects then (SceneBuilder::driven()): those that it pushes or holds are sent when
-  /// they leave the way that the receiver works out from its own device. Without it the scene's driven objects are coded as any other.
+  /// they leave the path that the receiver works out from its own device. Without it the scene's driven objects are coded as any other.
   /// in   path  where the device is at each tick that is encoded, with all packets up to then.   allocates
   void know(std::shared_ptr<const DevicePath> path);
 

@@ -145,7 +145,7 @@ class Epoch:
         elif kind == PACE and self.direction == UP:
             self.take_pace(*elements)
         else:
-            self.take_said(kind, elements)
+            self.take_received(kind, elements)
         return True
 
     def measure(self, sample: int) -> None:
@@ -167,7 +167,7 @@ class Epoch:
             self.progress_at = now
         self.arrived |= numbers
         self.acknowledged = max(self.acknowledged, newest)
-        if self.direction == UP and self.path:              # which packets of the device act
+        if self.direction == UP and self.path:              # which packets of the device take effect
             self.path.acknowledge(numbers)
 
     def take_pace(self, begin: int, offset: int) -> None:
@@ -182,7 +182,7 @@ class Epoch:
     def keep_device(self, number: int, packet: bytes) -> None:
         self.path.add(number, decode_numbered(self.own, number, packet).moment.states[0])
 
-    def take_said(self, kind: int, elements: tuple) -> None:
+    def take_received(self, kind: int, elements: tuple) -> None:
         """What comes up only."""
 
     def take_piece(self, index: int, data: bytes) -> None:
@@ -340,7 +340,7 @@ class Client:
         self.rejoins = False                                # in this silence
         self.keep_alive_at = self.device_at = 0                   # of the last keep-alive, 0: none yet; of the next packet
         self.packet_at = -10 ** 9                           # when the last packet was decoded
-        self.first_live: Optional[int] = None               # number of the first datagram that said so
+        self.first_live: Optional[int] = None               # number of the first datagram that reported it
 
     def handle(self, now: int, datagram: bytes) -> None:
         """Raises StreamError if the datagram is dropped."""
@@ -462,8 +462,8 @@ class Client:
 PATIENCE = 10 * MS
 
 
-def said_by(datagrams: list[bytes]) -> dict:
-    """What a client has said, apart from when: acknowledgement, hashes, whole handshakes."""
+def sent_by(datagrams: list[bytes]) -> dict:
+    """What a client has sent, apart from when: acknowledgement, hashes, whole handshakes."""
     out: dict = {}
     for datagram in datagrams:
         form = datagram[0] & 3
@@ -481,7 +481,7 @@ def said_by(datagrams: list[bytes]) -> dict:
 
 
 def lines(script: str) -> Iterator[dict]:
-    """A line for each line of a script: what the end that it is for makes of it, and what it says then."""
+    """A line for each line of a script: what the end that it is for makes of it, and what it sends then."""
     if '"serve":' in script.split("\n", 1)[0]:
         import session_server                               # which imports this module
         yield from session_server.lines(script)
@@ -501,17 +501,17 @@ def lines(script: str) -> Iterator[dict]:
                 client.leave()
         except StreamError as e:
             error = e
-        said = said_by(list(client.poll(step["at"] + PATIENCE)))
-        newest, held, missing = said.get("acknowledges", (None, 0, None))
+        sent = sent_by(list(client.poll(step["at"] + PATIENCE)))
+        newest, held, missing = sent.get("acknowledges", (None, 0, None))
         if told == (newest, missing):
-            del said["acknowledges"]                        # nothing new
+            del sent["acknowledges"]                        # nothing new
         told = (newest, missing) if newest is not None else told
         answer = {"line": number, "state": client.state}
         if client.state == "closed":
             answer["reason"] = client.reason
         if error:
             answer["error"] = {"errc": error.errc, "rule": error.rule}
-        answer.update(said)
+        answer.update(sent)
         if client.state == "live":
             answer["states"] = [f"{d.state_hash():016x}" for d in client.epoch.decoders.substreams.values()]
         yield answer

@@ -94,7 +94,7 @@ typedef struct tactus_server_options {
   uint32_t headers; /* bytes around a datagram; 28: UDP and IPv4 */
   uint32_t reserved;
   uint64_t rate;                       /* bit/s to each client; 0: no limit */
-  uint64_t silence;                    /* us after which a client counts as gone; 120 s */
+  uint64_t silence;                    /* us of silence after which a client's session is closed; 120 s */
   double max_bound_scale;              /* factor by which bounds are scaled at most where the network is too slow, 1 to 64; 8 */
   const tactus_sender_options* sender; /* for every client; NULL: defaults */
   uint64_t world;                      /* what is simulated, for programs of clients to compare; 0: not told */
@@ -148,7 +148,7 @@ typedef struct tactus_client_options {
   double device_rotation;      /* rad; 0.02 */
   double device_weber;         /* 0.04: in contact */
   int64_t playout;             /* us behind the fastest packet; -1: adaptive */
-  uint64_t silence;            /* us after which the server counts as gone; 120 s */
+  uint64_t silence;            /* us of silence after which the session is closed; 120 s */
   const tactus_limits* limits; /* NULL: defaults */
   uint64_t token;              /* of a session that ended without the server's knowledge; 0: none */
   uint32_t seat;               /* that a participant wants, from 1; 0: any */
@@ -169,7 +169,7 @@ TACTUS_API tactus_status tactus_client_handle_timeout(tactus_client* client, uin
 TACTUS_API tactus_status tactus_client_submit(tactus_client* client, uint64_t now, const tactus_device_sample* sample,
                                               const tactus_device_contact* contact, tactus_error* error);
 /* In a scene with interest: where the user looks from, x y z [m, world], apart from the device; before _open, too, as an observer is told
-   of all until it has said so. tactus_receiver_levels tells what comes of it. What is not finite, or beyond 8000 km, does not count. */
+   of all until it has reported it. tactus_receiver_levels tells what comes of it. What is not finite, or beyond 8000 km, does not count. */
 TACTUS_API tactus_status tactus_client_set_viewpoint(tactus_client* client, uint64_t now, const double* place, tactus_error* error);
 /* in   capacity  at least TACTUS_DATAGRAM_BYTES */
 TACTUS_API tactus_status tactus_client_poll_datagram(tactus_client* client, uint64_t now, uint8_t* bytes, size_t capacity,

@@ -279,7 +279,7 @@ Outcome serve(const ServeOptions& options, const sim::Server& world, SessionServ
       TACTUS_CHECK(service.step(now, ticker.tick(), trace, options.output));
       strain.look(now, ticker, socket);
     }
-    service.say(now);
+    service.send(now);
     if (woken == Ticker::Woken::by_tick) watch.tick(begun, ticker, service, socket);
     if (meter.is_due(now)) meter.draw(now, meter_text(world, sessions, service, ticker));
   }

@@ -145,7 +145,7 @@ void add_traffic(Exposition& out, const ServerFigures& figures, const ServerFact
           figures.datagrams_refused);
   out.one("tactus_receive_dropped_total", "counter", "Datagrams that the system dropped, as too many waited for this program.",
           figures.datagrams_dropped);
-  out.one("tactus_receive_limited_total", "counter", "Datagrams dropped unread, as their sender said too much.",
+  out.one("tactus_receive_limited_total", "counter", "Datagrams dropped unread, as their sender sent too much.",
           figures.datagrams_limited);
   out.one("tactus_ticks_held_total", "counter", "Ticks that were not coded for a client, as its network carried no more.",
           sum.ticks_held);

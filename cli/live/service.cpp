@@ -41,7 +41,7 @@ void Service::hear() {
     const std::uint64_t now = microseconds_now();
     if (!sessions_.handle_datagram(now, heard->peer, heard->bytes)) ++refused_;
     wire_.settle([this](std::uint64_t peer) { return has_session(peer); });
-    say(now);
+    send(now);
   }
   while (const auto peer = wire_.poll_closed()) end(*peer);
   sessions_.handle_timeout(microseconds_now());
@@ -64,7 +64,7 @@ void Service::look_at_keys(std::uint64_t now) {
     if (told_[i].is_removed) sessions_.close(i, LeaveReason::bye);
     else find_user(status);
   }
-  say(now);
+  send(now);
 }
 
 /// What a client may do is what the user of its address may, whoever it was before.
@@ -92,11 +92,11 @@ void Service::look_at_floods(std::uint64_t now) {
 
 void Service::close(std::uint64_t now) {
   sessions_.close();
-  say(now);
+  send(now);
   wire_.close();
 }
 
-void Service::say(std::uint64_t now) {
+void Service::send(std::uint64_t now) {
   while (const auto datagram = sessions_.poll_datagram(now)) wire_.send(datagram->peer, datagram->bytes);
   while (const auto event = sessions_.poll_event()) tell(*event, now);
 }
@@ -144,7 +144,7 @@ Outcome Service::make_tick(std::uint64_t now, std::optional<TraceWriter>& trace,
   if (const auto sent = sessions_.submit(now, frame.tick, truth); !sent)
     return refuse("session", place_of_tick(frame.tick), sent.error());
   tell_held(frame.tick, now);
-  say(now);
+  send(now);
   if (observation_ != nullptr) observation_->offer(frame, truth.loads);
   if (trace)
     if (const auto written = trace->write(frame); !written) return refuse(output, place_of_tick(frame.tick), written.error());

@@ -31,7 +31,7 @@ class Service {
   void hear();
   /// The world comes to this tick. Ticks that were missed are made at once, if they are few; of many the world knows nothing.
   Outcome step(std::uint64_t now, std::int64_t tick, std::optional<TraceWriter>& trace, const std::string& output);
-  void say(std::uint64_t now);
+  void send(std::uint64_t now);
   /// Look at the file of the keys with the next tick, without waiting for the next second.
   void reload() { must_look_ = true; }
   /// Take leave of all.

@@ -268,10 +268,10 @@ TraceCoding MeshArguments::coding(const TriggerArguments& triggers) const {
 }
 
 Option* add_interpolation(Command& app, ReplicaOptions& options) {
-  const std::map<std::string, Interpolation> ways{
+  const std::map<std::string, Interpolation> interpolations{
       {"linear", Interpolation::linear}, {"hermite", Interpolation::hermite}, {"blending", Interpolation::blending}};
   return app.add_flag(
-      "--interpolate", "linear", [&options, ways](const std::string& way) { options.interpolation = ways.at(way); },
+      "--interpolate", "linear", [&options, interpolations](const std::string& name) { options.interpolation = interpolations.at(name); },
       {"linear", "hermite", "blending"},
       "Smooth the replica over 75 % of the mean inter-arrival time, 5 to 100 ms. With =hermite on cubics that keep the "
       "velocity, with =blending by projective velocity blending, else linear");

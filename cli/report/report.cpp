@@ -222,8 +222,8 @@ Json check_json(const CheckReport& c) {
 void add_particulars(Json& out, const Report& r) {
   if (r.seed) out["seed"] = *r.seed;
   if (r.segments) out["segments"] = *r.segments;
-  constexpr std::array kWays{"direct", "eased", "interpolated"};
-  if (r.client) out["client"] = kWays[static_cast<std::size_t>(*r.client)];
+  constexpr std::array kDisplays{"direct", "eased", "interpolated"};
+  if (r.client) out["client"] = kDisplays[static_cast<std::size_t>(*r.client)];
   for (const DeformableReport& d : r.deformables) out["solvers"].push_back(solver_json(d));
   for (const CheckReport& check : r.checks) out["checks"].push_back(check_json(check));
   if (r.rigid) out["rigid"] = rigid_json(*r.rigid);

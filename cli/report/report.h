@@ -198,7 +198,7 @@ struct CheckReport {
     std::optional<EnergyDifference> energy{};  ///< of an object; of a user the work of the hand
   };
   std::string against;              ///< "half the step"
-  std::vector<Quantity> objects{};  ///< [m] position, of the way from its first one
+  std::vector<Quantity> objects{};  ///< [m] position, of the displacement from its first one
   std::vector<double> turns{};      ///< [rad] largest difference in rotation, one per object
   std::vector<Quantity> users{};    ///< [N] force felt
   std::vector<Quantity> meshes{};   ///< [m] vertex farthest off, of the largest displacement
@@ -206,11 +206,11 @@ struct CheckReport {
 };
 
 /// How a client passes over to updates.
-enum class ClientWay : std::uint8_t { direct, eased, interpolated };
+enum class ClientDisplay : std::uint8_t { direct, eased, interpolated };
 
-constexpr ClientWay way_of_client(Interpolation interpolation, bool is_eased) {
-  if (interpolation != Interpolation::none) return ClientWay::interpolated;
-  return is_eased ? ClientWay::eased : ClientWay::direct;
+constexpr ClientDisplay display_of_client(Interpolation interpolation, bool is_eased) {
+  if (interpolation != Interpolation::none) return ClientDisplay::interpolated;
+  return is_eased ? ClientDisplay::eased : ClientDisplay::direct;
 }
 
 struct Report {
@@ -221,7 +221,7 @@ struct Report {
   std::uint64_t moving = 0;                                  ///< objects that can move
   std::size_t objects = 0, users = 0;
   std::optional<std::uint64_t> seed{}, segments{};
-  std::optional<ClientWay> client{};
+  std::optional<ClientDisplay> client{};
   std::vector<DeformableReport> deformables{};
   std::optional<RigidReport> rigid{};
   std::vector<CheckReport> checks{};

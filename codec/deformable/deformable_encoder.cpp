@@ -111,7 +111,7 @@ bool MainEncoder::is_within_bounds() const noexcept {
   return true;
 }
 
-/// The body alone if it is within the bounds; else with what it differs by now, if the device's way has told this shape better than the
+/// The body alone if it is within the bounds; else with what it differs by now, if the device's path has told this shape better than the
 /// motion so far.
 Following MainEncoder::choose_following(const EncodeRequest<MainState>& request) noexcept {
   const MainState& shown = request.shown;

@@ -395,7 +395,7 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
 }
 
 /// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
-/// coarse for the permitted force error, or the way too long for one update, the nearest place that it can name.
+/// coarse for the permitted force error, or the distance too long for one update, the nearest place that it can name.
 Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction, const RigidState& told) const noexcept {
   const std::uint32_t object = update.object;
   const RigidState& truth = truth_.state(object);

@@ -18,7 +18,7 @@ namespace tactus {
 enum class RigidProfile : std::uint8_t {
   thesis,  ///< linear dead reckoning from true velocities; clients jump to an update, or smooth what they show (Interpolation)
   main,  ///< updates tell velocities that lean towards the acceleration, to last longer, and how clients pass over to them: what is
-         ///< shown and felt does not jump, and the bounds hold on the way
+         ///< shown and felt does not jump, and the bounds hold meanwhile
 };
 
 /// How the stream of a deformable object is coded.

@@ -189,7 +189,7 @@ class DatagramWriter {
   explicit DatagramWriter(Direction direction) noexcept : direction_(direction) {}
 
   /// One that is not numbered. The span is valid until the next call.   time O(1); no allocation
-  std::span<const std::uint8_t> write(const Datagram& said, std::uint64_t epoch = 0) noexcept;
+  std::span<const std::uint8_t> write(const Datagram& message, std::uint64_t epoch = 0) noexcept;
 
   /// Begin a numbered one.
   void begin(std::uint64_t number) noexcept;

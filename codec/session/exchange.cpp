@@ -64,8 +64,8 @@ Result<std::uint64_t> Exchange::receive(std::uint64_t now, const Numbered& datag
 }
 
 Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
-  if (const auto* said = std::get_if<Acknowledgement>(&part)) {
-    TACTUS_CHECK(acknowledged(*said, reading));
+  if (const auto* ack = std::get_if<Acknowledgement>(&part)) {
+    TACTUS_CHECK(acknowledged(*ack, reading));
     return true;
   }
   const bool drives = path && direction_ == Direction::down;
@@ -111,7 +111,7 @@ void Exchange::set_waits(bool waits) noexcept {
   if (std::exchange(waits_, waits) != waits) report_link();
 }
 
-Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& reading) noexcept {
+Result<void> Exchange::acknowledged(const Acknowledgement& ack, Reading& reading) noexcept {
   const auto arrived = [&](std::uint64_t number) {
     progress_at_ = reading.now;
     const Slot& slot = slots_[number % slots_.size()];
@@ -135,7 +135,7 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
     wants_key_ = wants_key_ || (slot.number == number && slot.layered);
     lose(number, reading.now);
   };
-  TACTUS_CHECK(sent_.acknowledge(said, reading.now, arrived, lost));
+  TACTUS_CHECK(sent_.acknowledge(ack, reading.now, arrived, lost));
   if (pieces && sent_.round_trip())
     sent_.lose(kPieceReorder,
                reading.now - static_cast<std::uint64_t>(sent_.round_trip()->smoothed * 5 / 4 + sent_.round_trip()->variation),
@@ -144,12 +144,12 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
     path->settle(sent_.highest_acknowledged(), [this](std::uint64_t number) { return sent_.has_arrived(number); });
   reading.heard.round_trip = sent_.sample();
   if (sent_.sample()) report_link();
-  if (sent_.sample() && pieces) pace_pieces(said, reading.now);
+  if (sent_.sample() && pieces) pace_pieces(ack, reading.now);
   return {};
 }
 
-void Exchange::pace_pieces(const Acknowledgement& said, std::uint64_t now) noexcept {
-  const std::int64_t arrived = static_cast<std::int64_t>(now) - std::int64_t{16} * said.held;
+void Exchange::pace_pieces(const Acknowledgement& ack, std::uint64_t now) noexcept {
+  const std::int64_t arrived = static_cast<std::int64_t>(now) - std::int64_t{16} * ack.held;
   pieces->pace.told({.number = sent_.highest_acknowledged(),
                      .newest_sent = sent_.newest(),
                      .sent = arrived - *sent_.sample(),
@@ -263,7 +263,7 @@ bool Exchange::add_piece(DatagramWriter& writer, std::uint64_t number, std::uint
 }
 
 std::optional<std::uint64_t> Exchange::pieces_due() const noexcept {
-  if (!pieces || pieces->on_their_way() == 0) return std::nullopt;
+  if (!pieces || pieces->in_flight() == 0) return std::nullopt;
   const auto oldest = sent_.oldest();
   return oldest ? std::optional(*oldest + (patience() << timeouts_)) : std::nullopt;
 }
@@ -399,10 +399,10 @@ bool Exchange::shapes_come_in_time() const noexcept {
 /// A shape has a use until its tick is shown, and a little longer a packet of rigid objects that no other waits for. Otherwise all of them
 /// wait for one that is missing; but after an outage a key packet is there sooner than all of them.
 Resends::Latest Exchange::latest() const noexcept {
-  const auto way = static_cast<std::uint64_t>(sent_.round_trip()->least / 2);
-  return {.rigid = repairs_ ? std::max({kLatestRigid, 4 * patience(), 2 * playout_}) : way + playout_ + kBelated,
+  const auto one_way = static_cast<std::uint64_t>(sent_.round_trip()->least / 2);
+  return {.rigid = repairs_ ? std::max({kLatestRigid, 4 * patience(), 2 * playout_}) : one_way + playout_ + kBelated,
           .shape = shapes_come_in_time() ? std::max(kLatestShape, playout_) : 0,
-          .way = way};
+          .one_way = one_way};
 }
 
 /// Where all packets wait for one whose copies are lost, too, and another round takes long, there are more of them.

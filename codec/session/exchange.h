@@ -50,8 +50,8 @@ class Exchange {
     std::uint64_t number = 0;            ///< of the datagram
     std::optional<std::int64_t> tick;    ///< newest of the packets that were decoded
     std::optional<std::int64_t> oldest;  ///< oldest of them
-    bool is_copy = false;                ///< one of rigid objects was a copy: its tick tells nothing about the way
-    /// Of the packets that were held until now, those with the fastest and the slowest way.
+    bool is_copy = false;                ///< one of rigid objects was a copy: its tick tells nothing about the delay
+    /// Of the packets that were held until now, those with the shortest and the longest delay.
     struct Arrival {
       std::int64_t tick = 0;
       std::uint64_t at = 0;  ///< [us]
@@ -119,12 +119,12 @@ class Exchange {
   /// Add the next piece to the datagram of this number.   pre  there is one
   bool add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
   void expire_pieces(std::uint64_t now) noexcept;            ///< what should be acknowledged by now goes again
-  std::optional<std::uint64_t> pieces_due() const noexcept;  ///< [us] when that is; nothing: none is on its way
+  std::optional<std::uint64_t> pieces_due() const noexcept;  ///< [us] when that is; nothing: none is in flight
   /// [us] since when the first packet that is held waits; nothing: none is held.
   std::optional<std::uint64_t> waits_since() const noexcept { return held_ ? held_->waits_since() : std::nullopt; }
   /// The client has asked for a key packet of the rigid objects. It gets one, but not more often than one can be answered.
   void want_key(std::uint64_t now) noexcept;
-  void set_playout(std::uint64_t delay) noexcept { playout_ = delay; }  ///< [us] of the client, as it has said
+  void set_playout(std::uint64_t delay) noexcept { playout_ = delay; }  ///< [us] of the client, as it has reported
   /// On what packets of rigid objects that come build: numbers without one are then not missing.
   void expect(bool repaired) noexcept { repaired_ = repaired; }
   bool is_repaired() const noexcept { return repaired_; }
@@ -157,8 +157,8 @@ class Exchange {
 
   Result<std::uint64_t> receive(std::uint64_t now, const Numbered& datagram) noexcept;
   Result<bool> handle(const Part& part, Reading& reading) noexcept;
-  Result<void> acknowledged(const Acknowledgement& said, Reading& reading) noexcept;
-  void pace_pieces(const Acknowledgement& said, std::uint64_t now) noexcept;
+  Result<void> acknowledged(const Acknowledgement& ack, Reading& reading) noexcept;
+  void pace_pieces(const Acknowledgement& ack, std::uint64_t now) noexcept;
   Result<void> take(const FragmentPart& fragment, Reading& reading) noexcept;
   bool decode(std::uint64_t number, std::span<const std::uint8_t> packet, Reading& reading) noexcept;
   bool hold(std::uint64_t number, std::span<const std::uint8_t> packet, const Error& error, std::uint64_t now) noexcept;

@@ -36,8 +36,8 @@ std::optional<std::uint64_t> SentNumbers::oldest() const noexcept {
   return std::nullopt;
 }
 
-Result<std::uint64_t> SentNumbers::extend(const Acknowledgement& said) const noexcept {
-  const auto behind = static_cast<std::uint16_t>(next_ - 1 - said.newest);
+Result<std::uint64_t> SentNumbers::extend(const Acknowledgement& ack) const noexcept {
+  const auto behind = static_cast<std::uint16_t>(next_ - 1 - ack.newest);
   if (behind >= kMostAhead || behind + std::uint64_t{1} >= next_) return fail(Errc::invalid, "R-SES-6");
   return next_ - 1 - behind;
 }

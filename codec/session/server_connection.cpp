@@ -34,11 +34,11 @@ ServerConnection::ServerConnection(std::uint16_t client, const SessionServerOpti
       congestion_(options.max_bound_scale),
       pieces_at_(pieces_at) {}
 
-void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedScene& served, std::uint64_t epoch,
+void ServerConnection::open(std::uint64_t peer, const Join& message, const ServedScene& served, std::uint64_t epoch,
                             std::uint64_t now) noexcept {
   state_ = *next_state(server_transitions(), SessionState::closed, SessionEvent::open);
   peer_ = peer;
-  join_ = said;
+  join_ = message;
   validated_ = repeats_welcome_ = outdated_ = false;
   left_.reset();
   leaves_ = faults_ = 0;
@@ -109,17 +109,17 @@ bool ServerConnection::is_silent(std::uint64_t now) const noexcept {
 }
 
 Result<void> ServerConnection::handle_datagram(std::uint64_t now, std::span<const std::uint8_t> datagram) noexcept {
-  auto said = read_datagram(datagram, Direction::up);
-  if (said) validated_ = true;
-  if (!said) {
+  auto message = read_datagram(datagram, Direction::up);
+  if (message) validated_ = true;
+  if (!message) {
     ++faults_;
-    return tl::unexpected(said.error());
+    return tl::unexpected(message.error());
   }
-  if (const auto* leave = std::get_if<Leave>(&*said)) {
+  if (const auto* leave = std::get_if<Leave>(&*message)) {
     left_ = leave->reason;
     return {};
   }
-  const Numbered& numbered = std::get<Numbered>(*said);
+  const Numbered& numbered = std::get<Numbered>(*message);
   repeats_welcome_ = false;
   const auto heard = exchange_->handle(now, numbered, [&](const Part& part, const auto&) { return handle(part, now); });
   if (!heard) {
@@ -157,13 +157,13 @@ Result<void> ServerConnection::handle(const Part& part, std::uint64_t now) noexc
   return {};
 }
 
-void ServerConnection::take(const ReportPart& said, std::uint64_t now) noexcept {
+void ServerConnection::take(const ReportPart& report, std::uint64_t now) noexcept {
   constexpr std::uint64_t kLongest = 2'000;  // [ms]: no copy comes later
-  playout_ = 1000 * std::min(said.delay, kLongest);
+  playout_ = 1000 * std::min(report.delay, kLongest);
   exchange_->set_playout(playout_);
-  if ((said.flags & ReportPart::kKey) != 0) exchange_->want_key(now);
+  if ((report.flags & ReportPart::kKey) != 0) exchange_->want_key(now);
   const auto metres = [](std::int32_t c) { return std::ldexp(c, -ReportPart::kViewExponent); };
-  if ((said.flags & ReportPart::kView) != 0) view_ = {metres(said.view[0]), metres(said.view[1]), metres(said.view[2])};
+  if ((report.flags & ReportPart::kView) != 0) view_ = {metres(report.view[0]), metres(report.view[1]), metres(report.view[2])};
 }
 
 /// From where the client looks, in a scene with interest: a participant from its device at least, as soon as that is known.
@@ -254,12 +254,12 @@ bool ServerConnection::take(std::uint64_t now, ClientParts& parts) {
   return true;
 }
 
-void ServerConnection::compare(const HashPart& said) noexcept {
+void ServerConnection::compare(const HashPart& received) noexcept {
   const std::uint64_t newest = exchange_->sent().newest();
-  const std::uint64_t back = static_cast<std::uint16_t>(newest - said.number);
+  const std::uint64_t back = static_cast<std::uint16_t>(newest - received.number);
   for (const KnownHash& known : hashes_) {
-    if (known.number == 0 || known.substream != said.substream || known.number + back != newest) continue;
-    if (known.hash == said.hash) return;
+    if (known.number == 0 || known.substream != received.substream || known.number + back != newest) continue;
+    if (known.hash == received.hash) return;
     ++wrong_states_;
     exchange_->sender->request_key();
     return;
@@ -324,7 +324,7 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
     welcome_at_ = now + kWelcomeEvery;
     return writer_.write(welcome_);
   }
-  if (held_) return std::nullopt;  // an acknowledgement would say that what the client has is new
+  if (held_) return std::nullopt;  // an acknowledgement would mean that what the client has is new
   exchange_->expire_pieces(now);
   const bool piece = piece_due().value_or(now + 1) <= now;
   const bool wanted = piece || wants_pace(now) || wants_seat(now);
@@ -348,7 +348,7 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
   return datagram;
 }
 
-/// Each datagram says it until one has arrived.   out  true: it was said
+/// Each datagram has it until one has arrived.   out  true: this one has it
 bool ServerConnection::tell_baselines(DatagramWriter& writer, std::uint64_t number) noexcept {
   if (baselines_number_ > 0 && exchange_->sent().highest_acknowledged() >= baselines_number_) tells_baselines_ = false;
   if (!tells_baselines_ || state_ != SessionState::live || !writer.add(BaselinesPart{1})) return false;
@@ -383,7 +383,7 @@ std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
   if (state_ == SessionState::closed) return std::nullopt;
   std::uint64_t due = exchange_->heard_at() + (validated_ ? silence_ : kUnvalidated);
   if (repeats_welcome_ && state_ == SessionState::receiving) due = std::min(due, welcome_at_);
-  if (held_ || !exchange_->sent().next()) return due;  // nothing else may be said, or there is no number left
+  if (held_ || !exchange_->sent().next()) return due;  // nothing else may be sent, or there is no number left
   if (const auto acknowledgement = exchange_->due()) due = std::min(due, *acknowledgement);
   if (pace_ && pace_->waits()) due = std::min(due, pace_at_);
   if (seat_waits_) due = std::min(due, seat_at_);

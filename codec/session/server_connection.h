@@ -30,8 +30,8 @@ struct ServedScene {
   SenderOptions sender;
 
   /// Within the limits of a client.
-  bool fits(const Join& said) const noexcept {
-    return state_bytes(*scene) <= said.state_limit && declaration->size() <= said.header_limit;
+  bool fits(const Join& message) const noexcept {
+    return state_bytes(*scene) <= message.state_limit && declaration->size() <= message.header_limit;
   }
 };
 
@@ -63,7 +63,7 @@ class ServerConnection {
   bool is_free() const noexcept { return state_ == SessionState::closed && leaves_ == 0; }
   const Welcome& welcome() const noexcept { return welcome_; }
 
-  void open(std::uint64_t peer, const Join& said, const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
+  void open(std::uint64_t peer, const Join& message, const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
   void move(std::uint64_t peer) noexcept { peer_ = peer; }
   void seat(std::uint8_t seat) noexcept;
   void shift(std::int64_t shift) noexcept { served_.shift = shift; }
@@ -86,7 +86,7 @@ class ServerConnection {
 
   bool wants_parts() const noexcept { return parts_ == Parts::wanted; }
   ClientParts ask_parts() noexcept;  ///< pre  wants_parts()
-  /// The client goes live.   out  false: it has gone, or begun anew
+  /// The client goes live.   out  false: it is closed, or has begun anew
   bool take(std::uint64_t now, ClientParts& parts);
   void refuse_parts() noexcept { parts_ = Parts::none; }
   std::optional<Sender> take_old() noexcept { return std::exchange(old_, std::nullopt); }  ///< of an epoch before
@@ -112,9 +112,9 @@ class ServerConnection {
   Result<void> go_live(std::uint64_t now) noexcept;
   ClientParts parts() const noexcept;
   void measured(std::int64_t sample, std::uint64_t now) noexcept;
-  void compare(const HashPart& said) noexcept;
+  void compare(const HashPart& received) noexcept;
   void note_hash(const Packet& packet, std::size_t& hashes) noexcept;
-  void take(const ReportPart& said, std::uint64_t now) noexcept;
+  void take(const ReportPart& report, std::uint64_t now) noexcept;
   void look() noexcept;
   std::optional<DeviceSample> driving_device(std::uint64_t now) noexcept;
   bool tell_baselines(DatagramWriter& writer, std::uint64_t number) noexcept;
@@ -147,7 +147,7 @@ class ServerConnection {
   bool repeats_welcome_ = false;
   bool tells_baselines_ = false;                  // the client does not know yet that they are the acknowledged ones
   bool seat_waits_ = false;                       // for an acknowledgement
-  std::optional<LeaveReason> left_;               // said by the client
+  std::optional<LeaveReason> left_;               // sent by the client
   std::uint64_t silence_, headers_, piece_time_;  // [us], [bytes] around a datagram, [us] of a piece at the rate
   double max_bound_scale_;
   std::uint64_t peer_ = 0, token_ = 0;
@@ -171,8 +171,8 @@ class ServerConnection {
   std::uint64_t pace_at_ = 0;       // [us] when its changes go again
   ButtonsPart buttons_;
   std::uint64_t playout_ = 0;                    // [us] that the client reported last
-  std::optional<Vec3> view_;                     // [m] where it said that it looks from
-  std::uint64_t baselines_number_ = 0;           // of the first datagram that said so
+  std::optional<Vec3> view_;                     // [m] where it looks from, by its report
+  std::uint64_t baselines_number_ = 0;           // of the first datagram with the part
   std::uint64_t seat_at_ = 0, seat_number_ = 0;  // [us] when it goes again; of the first datagram with it, 0: none yet
 };
 

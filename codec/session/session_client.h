@@ -43,7 +43,7 @@ struct ClientEvent {
   LeaveReason reason = LeaveReason::bye;
 };
 
-/// Threads: one at a time. No call on the way of a datagram allocates but those that bring the declaration; none throws.
+/// Threads: one at a time. No call that handles a datagram allocates but those that bring the declaration; none throws.
 class SessionClient {
  public:
   /// err  as Sender::create: R-API-4 a bound of the device

@@ -117,7 +117,7 @@ struct SessionServerOptions {
   /// Factor by which the bounds of a client are scaled at most while its rate or its network does not carry what they ask for, 1 to 64.
   /// 1: they never do, and the states that do not fit are left out.
   double max_bound_scale = 8;
-  std::uint64_t silence = 120'000'000;  ///< [us] after which a client counts as gone
+  std::uint64_t silence = 120'000'000;  ///< [us] after which the session of a client is closed
   std::uint64_t world = 0;              ///< what is simulated, as the clients' programs find it, too; 0: not told
   /// The transport hands on datagrams only of peers that have answered from their address, as the seal does: the declaration goes with
   /// the welcome, a round trip sooner.
@@ -133,7 +133,7 @@ struct SessionClientOptions {
   PlayoutOptions playout{};
   DeviceCoding device{};                ///< of a participant
   bool senses_velocity = false;         ///< the samples of the device have one
-  std::uint64_t silence = 120'000'000;  ///< [us] after which the server counts as gone
+  std::uint64_t silence = 120'000'000;  ///< [us] after which the session is closed
   std::uint8_t seat = 0;                ///< that a participant wants, from 1; 0: any
 };
 

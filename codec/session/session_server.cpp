@@ -16,7 +16,7 @@ namespace tactus {
 
 struct SessionServer::Impl {
   Result<void> serve(SharedScene of, std::uint64_t now);
-  Result<void> join(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept;
+  Result<void> join(std::uint64_t now, std::uint64_t peer, const Join& message) noexcept;
   void keep_time(std::uint64_t now, std::int64_t tick) noexcept;
   ServerConnection* find(std::uint64_t peer) noexcept;
   ServerConnection* follow(std::uint64_t peer, std::uint64_t token) noexcept;
@@ -24,7 +24,7 @@ struct SessionServer::Impl {
     if (events.size() < events.capacity()) events.push_back(event);
   }
   void drop(ServerConnection& connection, SessionEvent event, LeaveReason reason) noexcept;
-  Result<Welcome> answer(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept;
+  Result<Welcome> answer(std::uint64_t now, std::uint64_t peer, const Join& message) noexcept;
 
   SessionServerOptions options;
   ServedScene served;
@@ -142,26 +142,26 @@ ServerConnection* SessionServer::Impl::follow(std::uint64_t peer, std::uint64_t 
 }
 
 /// A place for the client, or why there is none.
-Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept {
+Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, const Join& message) noexcept {
   const auto refuse = [&](LeaveReason reason) {
-    reply.emplace(peer, Refusal{said.nonce, reason});
+    reply.emplace(peer, Refusal{message.nonce, reason});
     const bool is_again = !events.empty() && events.back().kind == ServerEvent::Kind::refused && events.back().reason == reason;
     if (!is_again)
       note({.kind = ServerEvent::Kind::refused, .client = options.clients, .reason = reason});  // a flood fills nothing
   };
-  if (!said.is_known) {
+  if (!message.is_known) {
     refuse(LeaveReason::version);
     return {};
   }
   const bool is_here = find(peer) != nullptr;
-  ServerConnection* place = follow(peer, said.token);
-  if (place != nullptr && place->state() != SessionState::closed && place->nonce() == said.nonce) {
+  ServerConnection* place = follow(peer, message.token);
+  if (place != nullptr && place->state() != SessionState::closed && place->nonce() == message.nonce) {
     if (!is_here) note({.kind = ServerEvent::Kind::moved, .client = place->client()});
     reply.emplace(peer, place->welcome());
     return {};
   }
   if (place != nullptr) drop(*place, SessionEvent::left, LeaveReason::bye);  // the client has begun anew
-  if (!served.fits(said)) {
+  if (!served.fits(message)) {
     refuse(LeaveReason::limits);
     return {};
   }
@@ -173,7 +173,7 @@ Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, co
     }
     place = free->get();
   }
-  place->open(peer, said, served, draw(entropy), now);
+  place->open(peer, message, served, draw(entropy), now);
   peers[place->client()] = peer;
   reply.emplace(peer, place->welcome());
   note({.kind = ServerEvent::Kind::joined, .client = place->client()});
@@ -195,8 +195,8 @@ Result<void> SessionServer::handle_datagram(std::uint64_t now, std::uint64_t pee
     return handled;
   }
   if (!is_before_epochs(datagram) || !is_of_epoch(datagram, 0, Direction::up)) return fail(Errc::checksum, "R-SES-1");
-  TACTUS_TRY(const Datagram said, read_datagram(datagram, Direction::up));
-  const Join* const join = std::get_if<Join>(&said);
+  TACTUS_TRY(const Datagram message, read_datagram(datagram, Direction::up));
+  const Join* const join = std::get_if<Join>(&message);
   if (join == nullptr) return fail(Errc::invalid, "R-SES-2");
   return in.join(now, peer, *join);
 }
@@ -261,8 +261,8 @@ void SessionServer::close() noexcept {
 std::optional<SessionServer::Transmit> SessionServer::poll_datagram(std::uint64_t now) noexcept {
   Impl& in = *impl_;
   if (in.reply) {
-    const auto [peer, said] = *std::exchange(in.reply, std::nullopt);
-    return Transmit{peer, in.writer.write(said)};
+    const auto [peer, message] = *std::exchange(in.reply, std::nullopt);
+    return Transmit{peer, in.writer.write(message)};
   }
   for (; in.cursor < in.connections.size(); ++in.cursor) {
     ServerConnection& connection = *in.connections[(in.first + in.cursor) % in.connections.size()];

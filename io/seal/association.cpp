@@ -287,7 +287,7 @@ Association::Inside Association::open(const RecordHead& head, std::span<const st
                                       std::span<std::uint8_t> out) noexcept {
   const bool is_old = was_heard(head.number);
   inbox_ = wire;
-  has_spoken_ = true;  // what GnuTLS may say now is no flight of the handshake
+  has_spoken_ = true;  // what GnuTLS may send now is no flight of the handshake
   const std::size_t before = flight_.size();
   ssize_t size = GNUTLS_E_AGAIN;  // first GnuTLS drops what it still has of damaged datagrams of the handshake
   for (int i = 0; i < kMostRecords && !inbox_.empty() && (size == GNUTLS_E_AGAIN || size == GNUTLS_E_INTERRUPTED); ++i)

@@ -126,7 +126,7 @@ class Association {
   };
   /// in   wire  a datagram whose only record is alert or application_data of epoch 1   pre  open, out.size() >= kLargestSealed
   Inside open(const RecordHead& head, std::span<const std::uint8_t> wire, std::span<std::uint8_t> out) noexcept;
-  /// The alert close_notify: say no more.   pre  open
+  /// The alert close_notify: nothing more is sent.   pre  open
   std::span<const std::uint8_t> close() noexcept;
   /// A fatal alert; it changes nothing here.   out  in `out`, empty: GnuTLS refuses   pre  out.size() >= kLargestSealed
   std::span<const std::uint8_t> alert(std::uint8_t what, std::span<std::uint8_t> out) noexcept;

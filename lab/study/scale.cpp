@@ -99,12 +99,12 @@ class Motions {
   std::vector<std::uint32_t> moved_;
 };
 
-class Way {
+class DelayLine {
  public:
-  Way(const ScaleCase& of, std::uint64_t seed) : random_(seed), loss_(of.loss), way_(of.way) {}
+  DelayLine(const ScaleCase& of, std::uint64_t seed) : random_(seed), loss_(of.loss), delay_(of.delay) {}
   void send(std::uint64_t now, std::span<const std::uint8_t> bytes) {
     if (loss_ > 0 && random_.uniform(0, 1) < loss_) return;
-    on_it_.emplace_back(now + way_, Bytes(bytes.begin(), bytes.end()));
+    on_it_.emplace_back(now + delay_, Bytes(bytes.begin(), bytes.end()));
   }
   std::optional<Bytes> poll(std::uint64_t now) {
     if (on_it_.empty() || on_it_.front().first > now) return std::nullopt;
@@ -116,7 +116,7 @@ class Way {
  private:
   Random random_;
   double loss_;
-  std::uint64_t way_;
+  std::uint64_t delay_;
   std::deque<std::pair<std::uint64_t, Bytes>> on_it_;
 };
 
@@ -201,7 +201,7 @@ class World {
   static constexpr std::uint64_t kStart = 1'000'000;
   struct User {
     SessionClient client;
-    Way up, down;
+    DelayLine up, down;
   };
 
   World(const ScaleCase& of, SessionServer server)
@@ -221,7 +221,7 @@ class World {
   Result<void> join() {
     for (std::uint64_t number = 0; number < of_.clients; ++number) {
       TACTUS_TRY(auto client, SessionClient::create({.role = of_.role, .limits = kLimits}));
-      users_.push_back({std::move(client), Way(of_, 1000 + 2 * number + of_.seed), Way(of_, 1001 + 2 * number + of_.seed)});
+      users_.push_back({std::move(client), DelayLine(of_, 1000 + 2 * number + of_.seed), DelayLine(of_, 1001 + 2 * number + of_.seed)});
       User& user = users_.back();
       if (of_.reach > 0) user.client.set_viewpoint(eyes(number));
       user.client.open(now_, number + 1);

@@ -28,7 +28,7 @@ class Network {
  public:
   virtual ~Network() = default;
 
-  /// What clients and server say and hear until this tick, then the devices at the clients.
+  /// What clients and server send and hear until this tick, then the devices at the clients.
   /// in   devices, contacts  one per participant
   virtual Result<void> to_server(std::int64_t tick, std::span<const DeviceSample> devices,
                                  std::span<const std::optional<DeviceContact>> contacts) = 0;

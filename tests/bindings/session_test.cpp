@@ -35,9 +35,9 @@ struct Ends {
   }
   tactus_session_status status(bool of_client) const {
     auto out = sized<tactus_session_status>();
-    const auto said =
+    const auto done =
         of_client ? tactus_client_status(client.get(), &out, nullptr) : tactus_server_status(server.get(), 0, &out, nullptr);
-    EXPECT_EQ(said, TACTUS_OK);
+    EXPECT_EQ(done, TACTUS_OK);
     return out;
   }
   /// Ticks of 1 ms, without a device.

@@ -74,7 +74,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (scene->driven && !contacts.empty())
       if (const auto device = to_grid({{contacts[0].device, {}}, {}, {}}, tick, scene->grid))
         path->add(static_cast<std::uint64_t>(tick) + 1, *device);
-    if (rule >= 192) {  // below that the client never says
+    if (rule >= 192) {  // below that the client never reports
       const Vec3 place{0.1 * in.u8(), 0, 0};
       sender->set_viewpoints({&place, in.u8() < 250 ? 1u : 0u});
     }
@@ -93,8 +93,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(receiver.state_hash(0) == sender->state_hash(0));
     const std::uint8_t lod = receiver.replica().lod(0, tick);
     require(scene->interest.has_value() || lod == 0);
-    const Vec3 way = sample.pose.position - before.position;  // longer ones than an update can name take two
-    const bool is_near = std::abs(way.x) < 511 && std::abs(way.y) < 511 && std::abs(way.z) < 511;
+    const Vec3 displacement = sample.pose.position - before.position;  // longer ones than an update can name take two
+    const bool is_near = std::abs(displacement.x) < 511 && std::abs(displacement.y) < 511 && std::abs(displacement.z) < 511;
     if (lod != kOutOfInterest && is_near) check_bounds(scaled(options.triggers, lod), receiver, tick, sample, contacts);
   }
   return 0;

@@ -94,8 +94,8 @@ TEST_F(OnTheSlab, FrictionHoldsTheProxyWithinItsCone) {
   EXPECT_NEAR(slides->force.z, -0.002 * kCoupling, 1e-12);
 }
 
-/// It comes aslant: its way meets the surface 0.5 mm before its foot, a third of the way.
-TEST_F(OnTheSlab, FrictionBeginsWhereTheWayMetTheSurface) {
+/// It comes aslant: its path meets the surface 0.5 mm before its foot, after a third of it.
+TEST_F(OnTheSlab, FrictionBeginsWhereThePathMetTheSurface) {
   rub(1);
   move({0.0295, 0.03, kCell + 0.0005});
   const auto held = move({0.031, 0.03, kCell - 0.001});

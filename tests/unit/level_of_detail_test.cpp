@@ -277,11 +277,11 @@ TEST(LevelsOfDetail, WhatEntersIsNotEasedFromWhatNotEverybodyHasShown) {
 
 // ==== in a session ====
 
-constexpr std::uint64_t kWay = 20'000;  // [us]
+constexpr std::uint64_t kDelay = 20'000;  // [us]
 
-sim::LinkOptions way(double loss, std::uint64_t seed) {
+sim::LinkOptions link_options(double loss, std::uint64_t seed) {
   sim::LinkOptions out;
-  out.delay = kWay;
+  out.delay = kDelay;
   out.loss = loss;
   out.seed = seed;
   return out;
@@ -297,7 +297,7 @@ Seen run(Role role, LossPolicy policy, double loss, bool told, std::uint64_t see
   SessionServerOptions options{.sender = options_of(Baseline::previous), .loss = policy, .max_bound_scale = 1};
   testing::SessionWorld session(scene, options);
   SessionClientOptions client{.role = role};
-  testing::SessionWorld::End& end = session.add(client, way(loss, seed), way(loss, seed + 50));
+  testing::SessionWorld::End& end = session.add(client, link_options(loss, seed), link_options(loss, seed + 50));
   World of(140, seed);
   std::vector<std::vector<RigidSample>> past;
   Seen out;

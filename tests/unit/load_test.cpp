@@ -212,7 +212,7 @@ TEST(Loads, ScaleWithTheOtherBounds) {
   EXPECT_LT(2 * packets[1], packets[0]);
 }
 
-TEST(Loads, ADeclarationSurvivesTheWayThroughBytes) {
+TEST(Loads, ADeclarationSurvivesBytes) {
   SceneBuilder builder;
   builder.rigid("a").loads({.force_exp = 7, .users = 3}).promise({}, {}, {.weber_fraction = 0.2, .force_floor = 1});
   const SharedScene scene = builder.build().value();

@@ -169,7 +169,7 @@ TEST(SealClient, HearsNothingButItsServerBeforeItIsOpen) {
   EXPECT_EQ(pair.error, "");
 }
 
-/// What a server says after its cookie, said by someone else before it.
+/// What a server sends after its cookie, sent by someone else before it.
 TEST(SealClient, AFlightBeforeTheCookieDelaysNothing) {
   std::vector<Bytes> flight;
   SealPair other, quiet, disturbed;

@@ -249,7 +249,7 @@ TEST(Sender, AJumpAcrossTheWholeGridTakesTwoUpdates) {
     for (const Packet& packet : all(sender.encode(tick, {.objects = {&body, 1}}))) ASSERT_TRUE(receiver.push(packet.bytes));
     const double error = norm(to_pose(receiver.replica().pose(0, tick), scene->grid.position).position - body.pose.position);
     if (tick == 2) {
-      EXPECT_NEAR(error, 488.6, 1) << "half of the way";
+      EXPECT_NEAR(error, 488.6, 1) << "half of the distance";
     } else {
       EXPECT_LE(error, 2e-6) << tick;
     }

@@ -234,7 +234,7 @@ TEST(LossBursts, WhateverComesItIsWithinItsLimit) {
 // ==== session resends ====
 
 constexpr std::uint64_t kMillisecond = 1000;                                           // [us]
-constexpr Resends::Latest kShapes{.rigid = 400'000, .shape = 120'000, .way = 20'000};  // [us]
+constexpr Resends::Latest kShapes{.rigid = 400'000, .shape = 120'000, .one_way = 20'000};  // [us]
 
 struct Sent {
   explicit Sent(std::size_t size = 40, std::size_t of = 2) : bytes(size, 7), substream(of) {}
@@ -326,7 +326,7 @@ TEST(Resends, KnowWhenTheRigidObjectsMustBeginAnew) {
   renewed.settle_rigid(2);
   EXPECT_EQ(renewed.next(390 * kMillisecond, kShapes), nullptr);
   EXPECT_FALSE(renewed.is_broken());
-  Resends full(0);  // 64 KiB: what gives way has not arrived
+  Resends full(0);  // 64 KiB: what is dropped has not arrived
   for (std::uint64_t n = 1; n <= 65; ++n) Sent(1000, 0).keep(full, n, n, 0);
   EXPECT_FALSE(full.is_broken());
   Sent(1000, 0).keep(full, 66, 66, 0);
@@ -364,7 +364,7 @@ TEST(Resends, FragmentsGoByThemselves) {
   EXPECT_EQ(resends.next(kMillisecond, kShapes), nullptr);
 }
 
-/// Nothing is allocated, what gives way never goes, and bytes are those of their packets.
+/// Nothing is allocated, what is dropped never goes, and bytes are those of their packets.
 TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
   Resends resends(0);
   std::mt19937_64 random(1);
@@ -383,7 +383,7 @@ TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
     }
     while (const auto* copy = random() % 4 ? resends.next(now, kShapes) : nullptr) {
       ASSERT_GT(copy->number + 57, number) << "56 have room";
-      ASSERT_LE(now + kShapes.way, copy->time + 120'000);
+      ASSERT_LE(now + kShapes.one_way, copy->time + 120'000);
       ASSERT_TRUE(
           std::ranges::all_of(resends.bytes(*copy), [&](auto b) { return b == static_cast<std::uint8_t>(copy->number); }));
       resends.sent(*copy, number, now);

@@ -321,7 +321,7 @@ std::pair<std::set<std::int64_t>, std::set<std::int64_t>> shapes_over(std::uint6
   return {made, got};
 }
 
-TEST(Exchange, LostShapesComeAgainWhereTheWayIsShort) {
+TEST(Exchange, LostShapesComeAgainWhereTheDelayIsShort) {
   const auto missing = [](std::uint64_t trip, bool layered) {
     const auto [made, got] = shapes_over(trip, layered);
     EXPECT_GT(made.size(), 300u);

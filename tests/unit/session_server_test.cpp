@@ -167,10 +167,10 @@ TEST(SessionServer, RoundTripAndClockAreMeasured) {
     for (const double loss : {0.0, 0.05}) {
       Show show(1, false);
       SessionWorld world(show.scene, {.sender = {.triggers = {.visual_position = 6e-3}}});
-      const auto way = [loss](std::uint64_t seed) {
+      const auto link = [loss](std::uint64_t seed) {
         return sim::LinkOptions{.seed = seed, .delay = 20'000, .jitter = 5'000, .loss = loss};
       };
-      world.add({}, way(1), way(2), clock);
+      world.add({}, link(1), link(2), clock);
       double server = 0, client = 0, worst_offset = 0;
       constexpr int kTicks = 3000, kWarm = 300;
       for (int i = 0; i < kTicks; ++i) {
@@ -247,7 +247,7 @@ TEST(SessionServer, BoundsScaleWhileTheRateDoesNotCarryThem) {
   EXPECT_GT(rated.bound_scaling.largest, 1.9);
   EXPECT_GT(rated.bound_scaling.time, 10'000'000u);
   EXPECT_LT(rated.traffic.ticks_held, fixed.traffic.ticks_held / 2);
-  // A bottleneck on the way of which the server is told nothing: it finds its rate.
+  // A bottleneck in the link of which the server is told nothing: it finds its rate.
   const sim::LinkOptions narrow{.delay = 20'000, .rate = static_cast<double>(needed) / 3};
   for (const double most : {1.0, 8.0}) {
     const ClientStatus found = run({.max_bound_scale = most}, narrow);
@@ -287,7 +287,7 @@ TEST(SessionServer, KnowsWhereADeviceIs) {
 }
 
 /// Strangers, old datagrams, damaged ones: nothing changes, nothing is allocated, and nothing longer is answered.
-/// A stranger's datagram: noise, a join that is damaged or whole, or what a client once said, damaged or whole, from another address.
+/// A stranger's datagram: noise, a join that is damaged or whole, or what a client once sent, damaged or whole, from another address.
 class Stranger {
  public:
   explicit Stranger(std::uint64_t seed) : random_(seed) { bytes_.reserve(1300); }
@@ -394,7 +394,7 @@ TEST(SessionServer, SubmitAndDatagramsAllocateNothing) {
   expect_same_states(world, 2);
 }
 
-/// While the rate holds the bodies back nothing else is said either: what the client has would count as new.
+/// While the rate holds the bodies back nothing else is sent either: what the client has would count as new.
 TEST(SessionServer, NoForceFromStatesThatTheRateHeldBack) {
   Show show;
   SessionWorld world(show.scene, {.sender = {.triggers = {.visual_position = 1e-4}}, .rate = 20'000, .max_bound_scale = 1});
