@@ -68,7 +68,8 @@ bool BoxProxy::enter(const Vec3& probe) noexcept {
       if (std::abs(from) >= extent) return false;
       continue;
     }
-    const double near = (-std::copysign(extent, displacement) - from) / displacement, far = (std::copysign(extent, displacement) - from) / displacement;
+    const double near = (-std::copysign(extent, displacement) - from) / displacement,
+                 far = (std::copysign(extent, displacement) - from) / displacement;
     if (near >= first) {
       first = near;
       met = BoxFace{axis, displacement > 0};

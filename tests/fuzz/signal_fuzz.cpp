@@ -87,7 +87,8 @@ void devices(ByteReader& in) {
     require(packets.has_value());
     for (const Packet& packet : *packets) require(receiver.push(packet.bytes).has_value());
     const bool is_held = std::ranges::any_of(sender->held(), [](const HeldPart& h) { return h.part == TruthPart::object; });
-    const bool is_near = std::abs(displacement.x) < 511 && std::abs(displacement.y) < 511 && std::abs(displacement.z) < 511;  // what an update can name
+    const bool is_near = std::abs(displacement.x) < 511 && std::abs(displacement.y) < 511 &&
+                         std::abs(displacement.z) < 511;  // what an update can name
     if (is_held || !is_near) continue;
     const DeviceSample shown = device_at(receiver, tick, 0);
     require(norm(shown.position - sample.position) <= coding.position);

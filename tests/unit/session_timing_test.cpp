@@ -290,7 +290,7 @@ TEST(DevicePace, WhatIsLateSlowsItDownAtOnce) {
   EXPECT_FALSE(pace.step(503, 433)) << "once";
 }
 
-/// The delay gets longer by 100 ms, with a packet every 10 ms: until the device's tick goes on, all are too late to take effect, and the pace does not
+/// The delay gets longer by 100 ms, with a packet every 10 ms: until the device's tick goes on, all are too late to count, and the pace does not
 /// get slower for it.
 TEST(DevicePace, AJumpOfTheDelaySlowsItDownByAsMuch) {
   DevicePace pace(1000);
