@@ -211,14 +211,14 @@ void Sender::set_link(const LinkState& link) noexcept {
   if (impl_->loads) impl_->loads->codec().set_link(link);
 }
 
-void Sender::set_widening(double factor) noexcept {
+void Sender::set_bound_scale(double factor) noexcept {
   const double within = factor >= 1 ? std::min(factor, 64.0) : 1;  // NaN: 1
-  impl_->rigid.codec().set_widening(within);
-  for (auto& object : impl_->deformables) object->set_widening(within);
-  if (impl_->loads) impl_->loads->codec().set_widening(within);
+  impl_->rigid.codec().set_bound_scale(within);
+  for (auto& object : impl_->deformables) object->set_bound_scale(within);
+  if (impl_->loads) impl_->loads->codec().set_bound_scale(within);
 }
 
-void Sender::look_from(std::span<const Vec3> places) noexcept { impl_->rigid.codec().look_from(places); }
+void Sender::set_viewpoints(std::span<const Vec3> places) noexcept { impl_->rigid.codec().set_viewpoints(places); }
 
 void Sender::forget_last(std::size_t substream) noexcept {
   if (substream == 0) impl_->rigid.forget_last();

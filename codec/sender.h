@@ -126,18 +126,18 @@ class Sender {
   /// in  substream, sequence  as in Packet
   void acknowledge(std::size_t substream, std::uint16_t sequence) noexcept;
 
-  /// Report what the way to the receiver and back does. With Baseline::acknowledged the newest state of an object is sent again, made
+  /// Report what the link to the receiver and back does. With Baseline::acknowledged the newest state of an object is sent again, made
   /// anew, while no acknowledgement names a packet that held it; of a deformable object without layers, where packets get lost.
   void set_link(const LinkState& link) noexcept;
 
-  /// Multiply all bounds but the heartbeat, from the next tick on: less to send where the way does not carry what they ask for.
+  /// Multiply all bounds but the heartbeat, from the next tick on: less to send where the link does not carry what they ask for.
   /// in   factor  1 to 64; it is limited to these. 1: the bounds as given
-  void set_widening(double factor) noexcept;
+  void set_bound_scale(double factor) noexcept;
 
   /// In a scene with interest: where its client looks from, from the next tick on, so that what is far is sent with wider bounds or not at all
   /// (SceneBuilder::interest()). Before the first call all rigid objects are sent in full; where no place is known, none.
   /// in   places  [m] at most two: its device, and its eyes or whatever stands for them. Others are ignored.   time 10 ns
-  void look_from(std::span<const Vec3> places) noexcept;
+  void set_viewpoints(std::span<const Vec3> places) noexcept;
 
   /// Report that the newest packet of this substream will not be decoded (it is dropped, or known to be lost). The next one
   /// builds on the state before it, or on the initial state if the scene's baseline_span does not reach that far. At most once
@@ -145,7 +145,7 @@ class Sender {
   void forget_last(std::size_t substream) noexcept;
 
   /// Know the device of the one receiver, which may drive objects then (SceneBuilder::driven()): those that it pushes or holds are sent when
-  /// they leave the way that the receiver computes from its own device. Without it the scene's driven objects are coded as any other.
+  /// they leave the path that the receiver computes from its own device. Without it the scene's driven objects are coded as any other.
   /// in   path  where the device is at each tick that is encoded, with all packets up to then.   allocates
   void know(std::shared_ptr<const DevicePath> path);
 

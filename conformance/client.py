@@ -108,7 +108,7 @@ def main() -> int:
     said = {"client": epoch.client, "packets": epoch.packets, "epochs": epochs, "round_trip_us": epoch.round_trip and epoch.round_trip[0],
             "state_hashes": [f"{d.state_hash():016x}" for d in epoch.decoders.substreams.values()]}
     if epoch.path:
-        said.update({"paces": len(epoch.path.offsets), "without_effect": sum(not epoch.path.acts(n) for n in epoch.path.states)})
+        said.update({"paces": len(epoch.path.offsets), "without_effect": sum(not epoch.path.takes_effect(n) for n in epoch.path.states)})
     print(json.dumps(said))
     return 0
 

@@ -46,18 +46,18 @@ class DevicePath:
         self.states = {n: kept for n, kept in self.states.items() if n > number - MOST_PACKETS}
 
     def acknowledge(self, numbers: set[int]) -> None:
-        """These packets act, and others below the highest do not as far as is known."""
+        """These packets take effect, and others below the highest do not as far as is known."""
         self.revision += 1
         self.acknowledged = max(self.acknowledged, *numbers)
         self.accepted = {n for n in self.accepted | numbers if n > self.acknowledged - MOST_PACKETS}
 
-    def acts(self, number: int) -> bool:
+    def takes_effect(self, number: int) -> bool:
         return number > self.acknowledged or number in self.accepted
 
     def place(self, t: int) -> Optional[tuple]:
         tick = self.device_tick(t)
         if tick is None:
             return None
-        acting = (n for n in sorted(self.states, reverse=True) if self.states[n].tick <= tick and self.acts(n))
-        number = next(acting, None)
+        effective = (n for n in sorted(self.states, reverse=True) if self.states[n].tick <= tick and self.takes_effect(n))
+        number = next(effective, None)
         return None if number is None else predict(self.scene, self.states[number], tick)[0]

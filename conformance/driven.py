@@ -98,9 +98,9 @@ class DrivenBody:
             return
         self.along = tuple(lim(round_div(c << 24, s), 24) for c in v)
         self.about = tuple(lim(round_div(c << 24, s), 30) for c in w)
-        way = turn(m, self.along)
-        fall = round_shift(dot(way, self.down), 30)
-        level = tuple(way[a] - round_shift(fall * self.down[a], 30) for a in AXES)
+        direction = turn(m, self.along)
+        fall = round_shift(dot(direction, self.down), 30)
+        level = tuple(direction[a] - round_shift(fall * self.down[a], 30) for a in AXES)
         weight = length(self.g)
         self.rub = 0
         if weight > 0:
@@ -130,16 +130,16 @@ class DrivenBody:
 
     def step_pushed(self, m: tuple, pull: tuple) -> None:
         rate = self.scene.tick_rate
-        way, lever = turn(m, self.along), cross(self.about, self.c)
+        direction, lever = turn(m, self.along), cross(self.about, self.c)
         load = max(0, round_shift(dot(tuple(lim(p + g, 30) for p, g in zip(turn(m, pull), self.g)), self.down), 30))
         if self.first is None:
             self.first = load
         j = tuple(lim(a + round_shift(c, 23), 30) for a, c in zip(self.along, lever))
-        drive = round_shift(dot(pull, j) + dot(self.g, way), 24)
+        drive = round_shift(dot(pull, j) + dot(self.g, direction), 24)
         brake = (self.state.contact.drag << 12) + round_shift(self.rub * (load - self.first), 24)
         speed = clamp(self.speed + round_div((drive - brake) << 11, rate), 1, 1 << 33)
         s = min(round_div(speed << 5, rate), 1 << 31)
-        self.x = tuple(lim(x + round_shift(s * c, 24), 58) for x, c in zip(self.x, way))
+        self.x = tuple(lim(x + round_shift(s * c, 24), 58) for x, c in zip(self.x, direction))
         self.q = renorm(mul(self.q, small(tuple(round_shift(s * c, 22) for c in self.about))))
         self.speed = speed - round_shift(speed * self.constants.damping, 20)
 

@@ -104,7 +104,7 @@ class Surface:
         return sorted(set.intersection(*held) - {q.triangle})
 
     def met(self, p: tuple, q: Foot, last: Optional[tuple]) -> Foot:
-        """Where the way of the device met the surface."""
+        """Where the path of the device met the surface."""
         if last is None:
             return q
         a, b, c = (self.s[v] for v in self.triangles[q.triangle])

@@ -53,7 +53,7 @@ class Playout:
         return smoothed(path, a.state, self.left(known, k), s) if self.scene.smoothed else path
 
     def between(self, known: list[KnownUpdate], k: int, s: int) -> tuple[tuple, tuple]:
-        """The way from update k to the next one."""
+        """The path from update k to the next one."""
         a, after = known[k], known[k + 1:k + 2]
         if not after or a.number == 0 or a.state.lod == OUT_OF_INTEREST or not 0 < after[0].tick - a.tick <= self.reach:
             return predict(self.scene, a.state, s)

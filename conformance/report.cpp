@@ -177,13 +177,13 @@ constexpr DecodeLimits kLimits{.header_bytes = 1u << 20, .packet_bytes = 1u << 2
 class Client {
  public:
   /// In a smoothed scene no client smooths by itself.
-  static Interpolation way_in(const Scene& scene, std::optional<Interpolation> wanted) {
-    const Interpolation way = wanted.value_or(Interpolation::none);
-    return scene.is_smoothed && way != Interpolation::playout ? Interpolation::none : way;
+  static Interpolation interpolation_in(const Scene& scene, std::optional<Interpolation> wanted) {
+    const Interpolation interpolation = wanted.value_or(Interpolation::none);
+    return scene.is_smoothed && interpolation != Interpolation::playout ? Interpolation::none : interpolation;
   }
   static Result<Client> create(const SharedScene& scene, std::optional<Interpolation> interpolation) {
     TACTUS_TRY(Receiver receiver,
-               Receiver::create(scene, {.replica = {.interpolation = way_in(*scene, interpolation)}, .limits = kLimits}));
+               Receiver::create(scene, {.replica = {.interpolation = interpolation_in(*scene, interpolation)}, .limits = kLimits}));
     const std::int64_t delay = interpolation == Interpolation::playout ? kPlayoutDelay : 0;
     return Client(scene, std::move(receiver), interpolation.has_value(), delay);
   }

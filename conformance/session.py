@@ -19,7 +19,7 @@ from scene import THESIS, Declaration, read_declaration
 
 PREVIOUS = 0                                                # policies of baselines
 MOST_HELD, BYTES_HELD, LONGEST_HELD = 1024, 1 << 16, 2_000_000
-ASKS_BACK = {UP: (BUTTONS, STATE), DOWN: (PIECE, PACE, SEAT)}   # an acknowledgement rides on these, due or not
+ACK_RIDES_ON = {UP: (BUTTONS, STATE), DOWN: (PIECE, PACE, SEAT)}   # an acknowledgement rides on these, due or not
 MOST_UNREPORTED = 32                                        # numbers that are accepted until an acknowledgement is due at once
 PIECE_SIZE, WINDOW, WINDOW_PER_PIECE, LARGEST_WINDOW = 1024, 64, 16, 1024
 FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 4
@@ -90,8 +90,8 @@ class Epoch:
         self.next, self.acknowledged = 1, 0                 # own numbers
         self.sent_at: dict[int, int] = {}
         self.arrived: set[int] = set()                      # own numbers that were acknowledged
-        self.asked, self.progress_at = 0, 0                 # own number; when one was acknowledged, or the first asked
-        self.asked_at = self.last_sent = 0                  # when one that asks went, and any
+        self.eliciting, self.progress_at = 0, 0             # own number; when one was acknowledged, or the first ack-eliciting one went
+        self.eliciting_at = self.last_sent = 0              # when an ack-eliciting one went, and any
         self.round_trip: Optional[tuple[int, int]] = None   # smoothed, variation
         self.largest = 0                                    # packet; 0: there is no scene yet
         self.fragments: dict[tuple, dict] = {}
@@ -145,7 +145,7 @@ class Epoch:
         elif kind == PACE and self.direction == UP:
             self.take_pace(*elements)
         else:
-            self.take_said(kind, elements)
+            self.take_received(kind, elements)
         return True
 
     def measure(self, sample: int) -> None:
@@ -167,7 +167,7 @@ class Epoch:
             self.progress_at = now
         self.arrived |= numbers
         self.acknowledged = max(self.acknowledged, newest)
-        if self.direction == UP and self.path:              # which packets of the device act
+        if self.direction == UP and self.path:              # which packets of the device take effect
             self.path.acknowledge(numbers)
 
     def take_pace(self, begin: int, offset: int) -> None:
@@ -182,7 +182,7 @@ class Epoch:
     def keep_device(self, number: int, packet: bytes) -> None:
         self.path.add(number, decode_numbered(self.own, number, packet).moment.states[0])
 
-    def take_said(self, kind: int, elements: tuple) -> None:
+    def take_received(self, kind: int, elements: tuple) -> None:
         """What comes up only."""
 
     def take_piece(self, index: int, data: bytes) -> None:
@@ -286,7 +286,7 @@ class Epoch:
     was_driving = False                                     # at the server: the client was live before this datagram, in a scene with paths
 
     def wait_from(self, now: int) -> int:
-        """When an acknowledgement is due that something asks for now."""
+        """When an acknowledgement of something ack-eliciting now is due."""
         return now + self.patience
 
     def acknowledgement(self, now: int) -> bytes:
@@ -299,7 +299,7 @@ class Epoch:
 
     def unanswered(self) -> Optional[int]:
         """Since when an answer is missing."""
-        return self.progress_at if self.asked > self.acknowledged else None
+        return self.progress_at if self.eliciting > self.acknowledged else None
 
     def next_send(self, wanted: int) -> int:
         """Section 9: an end sends little while nothing is acknowledged for long."""
@@ -313,9 +313,9 @@ class Epoch:
             return None
         if packet or any(p[0] != HASH for p in parts):      # it waits for an answer
             self.progress_at = self.progress_at if self.unanswered() is not None else now
-            self.asked, self.asked_at = self.next, now
+            self.eliciting, self.eliciting_at = self.next, now
         self.last_sent = now
-        if self.ack_due is not None or self.accepted and any(p[0] in ASKS_BACK[self.direction] for p in parts):
+        if self.ack_due is not None or self.accepted and any(p[0] in ACK_RIDES_ON[self.direction] for p in parts):
             parts = [self.acknowledgement(now)] + parts
         if packet and parts:
             parts = parts + [part(PACKET_PART, varint(0) + packet)]
@@ -338,9 +338,9 @@ class Client:
         self.token, self.seat = token, 0
         self.retry_at, self.retry = 0, 100 * MS
         self.rejoins = False                                # in this silence
-        self.sign_at = self.device_at = 0                   # of the last sign of life, 0: none yet; of the next packet
+        self.keep_alive_at = self.device_at = 0                   # of the last keep-alive, 0: none yet; of the next packet
         self.packet_at = -10 ** 9                           # when the last packet was decoded
-        self.first_live: Optional[int] = None               # number of the first datagram that said so
+        self.first_live: Optional[int] = None               # number of the first datagram that reported it
 
     def handle(self, now: int, datagram: bytes) -> None:
         """Raises StreamError if the datagram is dropped."""
@@ -374,18 +374,18 @@ class Client:
             return
         self.epoch = Epoch(epoch, client, serial, size, digest, start)
         self.epoch.heard_at = now
-        self.state, self.sign_at, self.first_live, self.rejoins = "receiving", 0, None, False
+        self.state, self.keep_alive_at, self.first_live, self.rejoins = "receiving", 0, None, False
         self.token = epoch if serial == 0 else self.token
         if size > HEADER_LIMIT:
             self.leave(TOO_LARGE)
 
     def begin(self) -> None:
-        """Live, once the declaration is here; gone, if it cannot be read."""
+        """Live, once the declaration is here; closed, if it cannot be read."""
         if self.state != "receiving":
             return
         try:
             if self.epoch.begin():
-                self.state, self.sign_at = "live", 0
+                self.state, self.keep_alive_at = "live", 0
                 if self.device and self.epoch.scene.follows_devices():
                     self.epoch.drives()
         except StreamError as error:
@@ -406,8 +406,8 @@ class Client:
         if self.state not in ("receiving", "live"):
             return
         live, parts, packet = self.state == "live", [], b""
-        if now >= self.sign_due():
-            self.sign_at = now
+        if now >= self.keep_alive_due():
+            self.keep_alive_at = now
             if live:
                 parts.append(self.epoch.report(now))
             parts.append(part(STATE, bytes([live])))
@@ -432,14 +432,14 @@ class Client:
         since = self.epoch.unanswered() if self.state in ("receiving", "live") else None
         return float("inf") if since is None else since + max(400 * MS, 2 * self.epoch.answer())
 
-    def sign_due(self) -> int:
-        """When the next sign of life goes: sections 3.1 and 10."""
-        if self.sign_at == 0:
+    def keep_alive_due(self) -> int:
+        """When the next keep-alive goes: sections 3.1 and 10."""
+        if self.keep_alive_at == 0:
             return 0
         epoch, live = self.epoch, self.state == "live"
         if live and (self.first_live is None or epoch.acknowledged < self.first_live):
-            return epoch.next_send(self.sign_at + 50 * MS)
-        sent = max(self.sign_at, epoch.asked_at)
+            return epoch.next_send(self.keep_alive_at + 50 * MS)
+        sent = max(self.keep_alive_at, epoch.eliciting_at)
         served = not live or sent < self.packet_at + 1000 * MS
         pause = (100 if epoch.path else 50) if self.device else 100 if served else 1000
         return epoch.next_send(sent + pause * MS)
@@ -462,8 +462,8 @@ class Client:
 PATIENCE = 10 * MS
 
 
-def said_by(datagrams: list[bytes]) -> dict:
-    """What a client has said, apart from when: acknowledgement, hashes, whole handshakes."""
+def sent_by(datagrams: list[bytes]) -> dict:
+    """What a client has sent, apart from when: acknowledgement, hashes, whole handshakes."""
     out: dict = {}
     for datagram in datagrams:
         form = datagram[0] & 3
@@ -481,7 +481,7 @@ def said_by(datagrams: list[bytes]) -> dict:
 
 
 def lines(script: str) -> Iterator[dict]:
-    """A line for each line of a script: what the end that it is for makes of it, and what it says then."""
+    """A line for each line of a script: what the end that it is for makes of it, and what it sends then."""
     if '"serve":' in script.split("\n", 1)[0]:
         import session_server                               # which imports this module
         yield from session_server.lines(script)
@@ -501,17 +501,17 @@ def lines(script: str) -> Iterator[dict]:
                 client.leave()
         except StreamError as e:
             error = e
-        said = said_by(list(client.poll(step["at"] + PATIENCE)))
-        newest, held, missing = said.get("acknowledges", (None, 0, None))
+        sent = sent_by(list(client.poll(step["at"] + PATIENCE)))
+        newest, held, missing = sent.get("acknowledges", (None, 0, None))
         if reported == (newest, missing):
-            del said["acknowledges"]                        # nothing new
+            del sent["acknowledges"]                        # nothing new
         reported = (newest, missing) if newest is not None else reported
         answer = {"line": number, "state": client.state}
         if client.state == "closed":
             answer["reason"] = client.reason
         if error:
             answer["error"] = {"errc": error.errc, "rule": error.rule}
-        answer.update(said)
+        answer.update(sent)
         if client.state == "live":
             answer["states"] = [f"{d.state_hash():016x}" for d in client.epoch.decoders.substreams.values()]
         yield answer

@@ -14,7 +14,7 @@ from datagram import DOWN, FORMS, HANDSHAKE, KINDS, PACKET, PARTS, UP, WELCOME, 
 from run import load_cases
 from session_server import split_mix
 
-LONGEST = 60_000                                            # bytes of a script: larger ones are slow and say nothing more
+LONGEST = 60_000                                            # bytes of a script: larger ones are slow and show nothing more
 STEPS = {DOWN: [16_011] * 12 + [150_000, 700_000, 3_000_000, 11_000_000, 121_000_000], UP: [300_017] * 12 + [30_017, 900_000, 11_000_000, 121_000_000]}  # us
 DRAWN = 4                                                   # epochs
 BORDERS = [0, 1, 2, 3, 6, 7, 63, 64, 127, 128, 255, 1023, 1024, 4095, 4096, 1 << 14, (1 << 32) - 1, (1 << 53), (1 << 64) - 1]
@@ -102,7 +102,7 @@ def damaged_datagram(data: bytes, direction: int, epochs: list[int], rng: random
     return sealed(body, own if rng.randrange(8) else rng.choice(epochs), direction)
 
 
-def said_by_program(direction: int, lines: list[dict], rng: random.Random) -> dict:
+def wanted_by_program(direction: int, lines: list[dict], rng: random.Random) -> dict:
     if direction == DOWN:
         return {"leave": 1}
     kind = rng.randrange(3)
@@ -113,10 +113,10 @@ def said_by_program(direction: int, lines: list[dict], rng: random.Random) -> di
 
 def burst(direction: int, epochs: list[int], rng: random.Random) -> list[dict]:
     """As many datagrams of one kind, with rising numbers, as make an acknowledgement due, or break rules too often."""
-    said = rng.choice([part(64, b""), part(1, b"\xff\xff\0\0\0"), part(2, b"\0"), part(5, b"\0"), part(9, b"")])
+    body = rng.choice([part(64, b""), part(1, b"\xff\xff\0\0\0"), part(2, b"\0"), part(5, b"\0"), part(9, b"")])
     first, epoch = rng.randrange(1, 200), rng.choice(epochs)
     address = {} if direction == DOWN else {"from": 1}
-    return [{**address, "heard": sealed(head(PARTS, first + i) + said, epoch, direction).hex()} for i in range(rng.choice([33, 70, 110]))]
+    return [{**address, "heard": sealed(head(PARTS, first + i) + body, epoch, direction).hex()} for i in range(rng.choice([33, 70, 110]))]
 
 
 def damage(lines: list[dict], others: list[list[dict]], direction: int, rng: random.Random) -> None:
@@ -138,7 +138,7 @@ def damage(lines: list[dict], others: list[list[dict]], direction: int, rng: ran
     elif kind == 3:
         lines.insert(at, {**({} if direction == DOWN else {"from": rng.randrange(1, 4)}), "heard": random_datagram(direction, epochs, rng).hex()})
     elif kind == 4:
-        lines.insert(at, said_by_program(direction, lines, rng))
+        lines.insert(at, wanted_by_program(direction, lines, rng))
     elif kind == 5 and direction == UP and "from" in here:
         lines[min(at, len(lines) - 1)] = {**here, "from": rng.randrange(1, 4)}
     elif kind == 6:

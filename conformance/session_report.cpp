@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::uint64_t kPatience = 10'000;  // [us] after which an acknowledgement is due
 
-/// What a client has said, apart from when: acknowledgement, hashes, whole handshakes.
-struct Said {
+/// What a client has sent, apart from when: acknowledgement, hashes, whole handshakes.
+struct Sent {
   std::optional<Acknowledgement> acknowledgement;
   std::vector<HashPart> hashes;
   std::set<std::string> handshakes;
@@ -36,7 +36,7 @@ struct Said {
     }
     PartReader parts = numbered->parts(Direction::up);
     while (const auto part = parts.next().value_or(std::nullopt)) {
-      if (const auto* said = std::get_if<Acknowledgement>(&*part)) acknowledgement = *said;
+      if (const auto* ack = std::get_if<Acknowledgement>(&*part)) acknowledgement = *ack;
       if (const auto* hash = std::get_if<HashPart>(&*part)) hashes.push_back(*hash);
     }
   }
@@ -46,15 +46,15 @@ struct Said {
           << hex(acknowledgement->missing, 16) << "\"]";
     const char* comma = "";
     if (!hashes.empty()) out << R"(,"hashes":[)";
-    for (const HashPart& said : hashes) {
-      out << comma << '[' << int{said.substream} << ',' << said.number << ",\"" << hex(said.hash, 8) << "\"]";
+    for (const HashPart& hash : hashes) {
+      out << comma << '[' << int{hash.substream} << ',' << hash.number << ",\"" << hex(hash.hash, 8) << "\"]";
       comma = ",";
     }
     if (!hashes.empty()) out << ']';
     comma = "";
     if (!handshakes.empty()) out << R"(,"says":[)";
-    for (const std::string& said : handshakes) {
-      out << comma << '"' << said << '"';
+    for (const std::string& handshake : handshakes) {
+      out << comma << '"' << handshake << '"';
       comma = ",";
     }
     if (!handshakes.empty()) out << ']';
@@ -90,9 +90,9 @@ class Script {
 
  private:
   void answer(std::uint64_t now, const std::optional<Error>& error) {
-    Said said;
-    while (const auto datagram = client_->poll_datagram(now + kPatience)) said.add(*datagram);
-    if (said.acknowledgement && !is_new(*said.acknowledgement)) said.acknowledgement.reset();
+    Sent sent;
+    while (const auto datagram = client_->poll_datagram(now + kPatience)) sent.add(*datagram);
+    if (sent.acknowledgement && !is_new(*sent.acknowledgement)) sent.acknowledgement.reset();
     while (const auto event = client_->poll_event())
       if (event->kind == ClientEvent::Kind::closed) reason_ = event->reason;
     const SessionState state = client_->status().state;
@@ -100,12 +100,12 @@ class Script {
     out_ << R"({"line":)" << lines_++ << R"(,"state":")" << kStates[static_cast<std::size_t>(state)] << '"';
     if (state == SessionState::closed && reason_) out_ << R"(,"reason":)" << static_cast<int>(*reason_);
     if (error) out_ << R"(,"error":{"errc":")" << errc_name(error->code) << R"(","rule":")" << error->rule << "\"}";
-    said.write(out_);
+    sent.write(out_);
     if (state == SessionState::live) write_states();
     out_ << "}\n";
   }
-  bool is_new(const Acknowledgement& said) {
-    const auto before = std::exchange(reported_, {said.newest, said.missing});
+  bool is_new(const Acknowledgement& ack) {
+    const auto before = std::exchange(reported_, {ack.newest, ack.missing});
     return before != reported_;
   }
   void write_states() {

@@ -16,7 +16,7 @@ from session import FIRST_ANSWER, MS, PIECE_SIZE, WINDOW, Epoch
 
 
 LEAST_JOIN = 80                                             # bytes
-WELCOME_EVERY, UNPROVEN, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
+WELCOME_EVERY, UNVALIDATED, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
 MOST_FAULTS = 100                                           # datagrams
 DRIVEN_PATIENCE = 140 * MS
 ROLES = "observer", "participant"
@@ -33,12 +33,12 @@ class ServedEpoch(Epoch):
         self.offered = [declaration[i:i + PIECE_SIZE] for i in range(0, len(declaration), PIECE_SIZE)]
         self.participates = participates
         self.carries: dict[int, int] = {}                   # piece in each datagram
-        self.on_their_way: set[int] = set()
+        self.in_flight: set[int] = set()
         self.pieces_there: set[int] = set()
         self.open: set[int] = set()                         # own numbers whose fate is not known
         self.timeouts = 0                                   # of pieces, since the last that arrived
         self.device_packets = 0
-        self.reported, self.asked_first = 0, None           # newest of the last acknowledgement; when something asked first since
+        self.reported, self.eliciting_first = 0, None           # newest of the last acknowledgement; when the first ack-eliciting one came since
         self.reported_changed = False                       # one below it was accepted since
         self.fates: list[bool] = []                         # whether numbers were lost, as far as it is known
 
@@ -52,13 +52,13 @@ class ServedEpoch(Epoch):
 
     def wait_from(self, now: int) -> int:
         """Section 4: long where the path of a device is known, while all is well."""
-        self.asked_first = now if self.asked_first is None else self.asked_first
+        self.eliciting_first = now if self.eliciting_first is None else self.eliciting_first
         well = not self.reported_changed and all(n in self.accepted for n in range(self.reported + 1, max(self.accepted) + 1))
         loss = sum(self.fates[-256:]) / max(128, len(self.fates[-256:]))
-        return self.asked_first + DRIVEN_PATIENCE if self.path and well and loss <= 0.01 else now + self.patience
+        return self.eliciting_first + DRIVEN_PATIENCE if self.path and well and loss <= 0.01 else now + self.patience
 
     def acknowledgement(self, now: int) -> bytes:
-        self.reported, self.asked_first, self.reported_changed = max(self.accepted), None, False
+        self.reported, self.eliciting_first, self.reported_changed = max(self.accepted), None, False
         return super().acknowledgement(now)
 
     def find_lost(self, now: int, newest: int, there: set[int]) -> None:
@@ -71,7 +71,7 @@ class ServedEpoch(Epoch):
         for n in sorted(n for n in self.open if n < newest and (newest - n > 64 or now - self.sent_at[n] > patience)):
             self.open.discard(n)
             self.fates.append(True)
-            self.on_their_way.discard(self.carries.get(n, -1))
+            self.in_flight.discard(self.carries.get(n, -1))
 
     def take_acknowledged(self, now: int, newest: int, held: int, missing: int) -> None:
         super().take_acknowledged(now, newest, held, missing)
@@ -79,7 +79,7 @@ class ServedEpoch(Epoch):
         for number in self.arrived & set(self.carries):
             index = self.carries.pop(number)
             self.pieces_there.add(index)
-            self.on_their_way.discard(index)
+            self.in_flight.discard(index)
             self.timeouts = 0
 
     def answer(self) -> int:
@@ -88,18 +88,18 @@ class ServedEpoch(Epoch):
     def lose_pieces(self, now: int) -> None:
         """Section 6: what was not acknowledged for long goes again."""
         patience = self.answer() << self.timeouts
-        if not self.on_their_way or not self.open or now < self.sent_at[min(self.open)] + patience:
+        if not self.in_flight or not self.open or now < self.sent_at[min(self.open)] + patience:
             return
         for n in [n for n in self.open if self.sent_at[n] <= now - patience]:
             self.open.discard(n)
-            self.on_their_way.discard(self.carries.get(n, -1))
+            self.in_flight.discard(self.carries.get(n, -1))
         self.timeouts = min(self.timeouts + 1, 1 if self.round_trip else 6)
 
     def write(self, now: int, parts: list[bytes], packet: bytes = b"") -> Optional[bytes]:
         self.open.add(self.next)
         return super().write(now, parts, packet)
 
-    def take_said(self, kind: int, elements: tuple) -> None:
+    def take_received(self, kind: int, elements: tuple) -> None:
         if kind == STATE and elements[0] == 1 and not self.live:
             self.live = True
             if self.participates:
@@ -110,7 +110,7 @@ class ServedEpoch(Epoch):
             self.buttons = elements
 
     def decode(self, now: int, number: int, packet: bytes) -> bool:
-        """False also for a packet that comes too late to act (65, section 4)."""
+        """False also for a packet that comes too late to take effect (65, section 4)."""
         if not super().decode(now, number, packet):
             return False
         if not self.path or number in self.path.states:
@@ -135,8 +135,8 @@ class ServedEpoch(Epoch):
         self.lose_pieces(now)
         first = next((i for i in range(len(self.offered)) if i not in self.pieces_there), len(self.offered))
         for index in range(first, min(first + WINDOW, len(self.offered))):
-            if index not in self.pieces_there | self.on_their_way and not self.live:
-                self.on_their_way.add(index)
+            if index not in self.pieces_there | self.in_flight and not self.live:
+                self.in_flight.add(index)
                 self.carries[self.next] = index
                 yield self.write(now, [part(PIECE, varint(index) + self.offered[index])])
         if self.ack_due is not None and now >= self.ack_due:
@@ -147,15 +147,15 @@ class ServedEpoch(Epoch):
 class Connection:
     def __init__(self, peer: int, client: int, role: int, nonce: int, limits: tuple[int, int]):
         self.peer, self.client, self.role, self.nonce, self.limits = peer, client, role, nonce, limits
-        self.proven = self.repeats_welcome = self.outdated = False
+        self.validated = self.repeats_welcome = self.outdated = False
         self.faults = 0                                     # datagrams that broke a rule
         self.epoch: ServedEpoch
         self.token = 0                                      # the first epoch
         self.serial = self.welcome_at = 0
 
     def begin(self, server: Server, epoch: int, now: int) -> None:
-        self.serial += 1 if self.proven else 0
-        self.repeats_welcome, self.outdated = self.proven, False
+        self.serial += 1 if self.validated else 0
+        self.repeats_welcome, self.outdated = self.validated, False
         self.welcome_at = now
         self.epoch = ServedEpoch(epoch, self.client, self.serial, len(server.declaration), fnv1a(server.declaration), server.start)
         self.token = self.token or epoch
@@ -177,8 +177,8 @@ class Server:
     def __init__(self, declaration: bytes, clients: int, epochs: Iterator[int], now: int):
         self.connections: list[Optional[Connection]] = [None] * clients
         self.epochs = epochs
-        self.says: list[tuple[int, bytes]] = []
-        self.gone: dict[int, Connection] = {}               # by number: their leaves are not sent yet
+        self.outbox: list[tuple[int, bytes]] = []
+        self.closed: dict[int, Connection] = {}               # by number: their leaves are not sent yet
         self.left: list[tuple[int, int]] = []
         self.serve(declaration, now)
 
@@ -193,22 +193,22 @@ class Server:
         self.serve(declaration, now)
         for c in self.there():
             if not self.fits(c.limits):
-                self.end(c, TOO_LARGE, says=True)
-            elif c.proven:
+                self.end(c, TOO_LARGE, notifies=True)
+            elif c.validated:
                 c.begin(self, next(self.epochs), now)
             else:
                 c.outdated = True
 
-    def end(self, c: Connection, reason: int, says: bool) -> None:
+    def end(self, c: Connection, reason: int, notifies: bool) -> None:
         self.connections[c.client] = None
         self.left.append((c.client, reason))
-        if says and c.proven:
-            self.gone[c.client] = c
-            self.says += [(c.peer, sealed(head(HANDSHAKE, LEAVE) + bytes([reason]), c.epoch.epoch, DOWN))] * 3
+        if notifies and c.validated:
+            self.closed[c.client] = c
+            self.outbox += [(c.peer, sealed(head(HANDSHAKE, LEAVE) + bytes([reason]), c.epoch.epoch, DOWN))] * 3
 
     def let_go(self, client: int, reason: int) -> None:
         if self.connections[client]:
-            self.end(self.connections[client], reason, says=True)
+            self.end(self.connections[client], reason, notifies=True)
 
     def handle(self, now: int, peer: int, datagram: bytes) -> None:
         """Raises StreamError if the datagram is dropped."""
@@ -225,7 +225,7 @@ class Server:
         except StreamError as error:
             c.faults += error.rule not in ("R-SES-4", "R-SES-6")
             if c.faults == MOST_FAULTS:
-                self.end(c, PROTOCOL, says=True)
+                self.end(c, PROTOCOL, notifies=True)
             raise
 
     def handle_own(self, now: int, c: Connection, datagram: bytes, form: int, value: int) -> None:
@@ -233,8 +233,8 @@ class Server:
         if form == HANDSHAKE or form > PACKET:
             require(form == HANDSHAKE and value == LEAVE, "invalid", "R-SES-2")
             reason = reason_of(Cursor(datagram, 2, len(datagram) - 4))
-            c.proven = True
-            self.end(c, reason, says=False)
+            c.validated = True
+            self.end(c, reason, notifies=False)
             return
         try:
             c.epoch.take(now, datagram)
@@ -245,7 +245,7 @@ class Server:
         self.has_spoken(c, now)
 
     def has_spoken(self, c: Connection, now: int) -> None:
-        c.proven, c.repeats_welcome = True, False
+        c.validated, c.repeats_welcome = True, False
         if c.outdated:
             c.begin(self, next(self.epochs), now)
 
@@ -262,23 +262,23 @@ class Server:
         require(not any(e.take(e.left(), CUT)), *SPARE)
         c = self.follow(peer, c, token)
         if c and c.nonce == nonce:
-            self.says.append((peer, c.welcome()))
+            self.outbox.append((peer, c.welcome()))
             return
         if c:
-            self.end(c, BYE, says=False)
-        c = c or next((self.gone[i] for i in sorted(self.gone) if self.gone[i].peer == peer), None)
-        free = [c.client] if c else [i for i, there in enumerate(self.connections) if not there and i not in self.gone]
+            self.end(c, BYE, notifies=False)
+        c = c or next((self.closed[i] for i in sorted(self.closed) if self.closed[i].peer == peer), None)
+        free = [c.client] if c else [i for i, there in enumerate(self.connections) if not there and i not in self.closed]
         if not self.fits((state_limit, header_limit)):
             self.refuse(peer, nonce, TOO_LARGE)
         elif not free:
             self.refuse(peer, nonce, FULL)
         else:
             place = free[0]
-            if self.gone.pop(place, None):                  # it need not be sent any more
-                self.says = [item for item in self.says if item[0] != peer]
+            if self.closed.pop(place, None):                  # it need not be sent any more
+                self.outbox = [item for item in self.outbox if item[0] != peer]
             c = self.connections[place] = Connection(peer, place, role, nonce, (state_limit, header_limit))
             c.begin(self, next(self.epochs), now)
-            self.says.append((peer, c.welcome()))
+            self.outbox.append((peer, c.welcome()))
 
     def follow(self, peer: int, here: Optional[Connection], token: int) -> Optional[Connection]:
         """The client of this token is at this address now."""
@@ -286,7 +286,7 @@ class Server:
         if known is None or known is here:
             return here
         if here:
-            self.end(here, BYE, says=False)
+            self.end(here, BYE, notifies=False)
         known.peer = peer
         return known
 
@@ -294,22 +294,22 @@ class Server:
         return state_bytes(self.scene) <= limits[0] and len(self.declaration) <= limits[1]
 
     def refuse(self, peer: int, nonce: int, reason: int) -> None:
-        self.says.append((peer, sealed(head(HANDSHAKE, REFUSAL) + struct.pack("<QB", nonce, reason), 0, DOWN)))
+        self.outbox.append((peer, sealed(head(HANDSHAKE, REFUSAL) + struct.pack("<QB", nonce, reason), 0, DOWN)))
 
     def pass_time(self, now: int) -> None:
         for c in self.there():
-            if now >= c.epoch.heard_at + (MOST_SILENCE if c.proven else UNPROVEN):
-                self.end(c, SILENCE, says=True)
+            if now >= c.epoch.heard_at + (MOST_SILENCE if c.validated else UNVALIDATED):
+                self.end(c, SILENCE, notifies=True)
 
     def poll(self, now: int) -> Iterator[tuple[int, bytes]]:
         """What is to be sent now, and to whom."""
-        yield from self.says
-        self.says, self.gone = [], {}
+        yield from self.outbox
+        self.outbox, self.closed = [], {}
         for c in self.there():
             if c.repeats_welcome and now >= c.welcome_at:
                 c.welcome_at = now + WELCOME_EVERY
                 yield c.peer, c.welcome()
-            if c.proven:
+            if c.validated:
                 for datagram in c.epoch.poll(now):
                     yield c.peer, datagram
 
@@ -329,7 +329,7 @@ def split_mix(state: int) -> Iterator[int]:
 
 
 class Listener:
-    """What the server has said to each address."""
+    """What the server has sent to each address."""
 
     def __init__(self) -> None:
         self.newest: dict[int, int] = {}                    # number of a datagram
@@ -339,9 +339,9 @@ class Listener:
         ack = part(ACK, struct.pack("<HHB", self.newest.get(peer, 0), 65535, 0))
         return sealed(head(PARTS, number) + ack + parts, epoch, UP)
 
-    def hear(self, said: list[tuple[int, bytes]]) -> dict:
+    def hear(self, sent: list[tuple[int, bytes]]) -> dict:
         acks, handshakes = {}, set()
-        for peer, datagram in said:
+        for peer, datagram in sent:
             value = struct.unpack("<H", datagram[:2])[0] >> 2
             if datagram[0] & 3 == HANDSHAKE:
                 handshakes.add((peer, datagram.hex()))
@@ -368,7 +368,7 @@ class Listener:
 
 
 def lines(script: str) -> Iterator[dict]:
-    """A line for each line of a script: who is there, and what the server says 25 ms later."""
+    """A line for each line of a script: who is there, and what the server sends 25 ms later."""
     server, listener = None, Listener()
     for number, line in enumerate(script.splitlines()):
         step, error = json.loads(line), None
@@ -387,14 +387,14 @@ def lines(script: str) -> Iterator[dict]:
                 server.let_go(step["closes"], step["reason"])
         except StreamError as e:
             error = e
-        said = listener.hear(list(server.poll(now + PATIENCE)))
+        sent = listener.hear(list(server.poll(now + PATIENCE)))
         answer: dict = {"line": number, "clients": [[c.peer, c.client, ROLES[c.role], c.state()] for c in server.there()]}
         if server.left:
             answer["left"] = [list(item) for item in server.left]
             server.left = []
         if error:
             answer["error"] = {"errc": error.errc, "rule": error.rule}
-        answer.update(said)
+        answer.update(sent)
         devices = [device_of(c.epoch) for c in server.there() if c.epoch.live and c.epoch.participates]
         if devices:
             answer["devices"] = devices

@@ -22,15 +22,15 @@ namespace {
 
 constexpr std::uint64_t kPatience = 25'000;  // [us] after which an acknowledgement is due
 
-/// What the server says to an address.
+/// What the server sends to an address.
 struct Peer {
   std::uint64_t epoch = 0;
   std::uint16_t newest = 0;                                       // number of its datagrams
   std::optional<std::pair<std::uint16_t, std::uint64_t>> reported{};  // newest, missing
 };
 
-/// What it has said after a line, apart from when.
-struct Said {
+/// What it has sent after a line, apart from when.
+struct Sent {
   std::map<std::uint64_t, Acknowledgement> acknowledgements;
   std::set<std::pair<std::uint64_t, std::string>> handshakes;
 };
@@ -82,14 +82,14 @@ class ServerScript {
     auto parsed = parse_scene(*bytes);
     return parsed ? std::move(parsed->scene) : nullptr;
   }
-  /// Of all that the server has said to this address.
+  /// Of all that the server has sent to this address.
   Bytes acknowledgement(std::string_view line, std::uint64_t from, const Bytes& parts) {
     const std::uint16_t newest = peers_[from].newest;
     DatagramWriter writer(Direction::up);
     writer.begin(number(line, "acknowledges"));
     writer.add(Acknowledgement{newest, 65535, 0});
-    const auto said = writer.finish(0);
-    Bytes out(said.begin(), said.end() - 4);
+    const auto written = writer.finish(0);
+    Bytes out(written.begin(), written.end() - 4);
     out.insert(out.end(), parts.begin(), parts.end());
     const auto put = [](Bytes& to, std::uint64_t value, int bytes) {
       for (int i = 0; i < bytes; ++i) to.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
@@ -100,32 +100,32 @@ class ServerScript {
     put(out, crc32(out, crc32(front)), 4);
     return out;
   }
-  void hear(std::uint64_t to, std::span<const std::uint8_t> datagram, Said& said) {
+  void hear(std::uint64_t to, std::span<const std::uint8_t> datagram, Sent& sent) {
     const Datagram read = read_datagram(datagram, Direction::down).value();
     Peer& peer = peers_[to];
     if (const auto* numbered = std::get_if<Numbered>(&read)) {
       peer.newest = numbered->number;
       PartReader parts = numbered->parts(Direction::down);
       while (const auto part = parts.next().value())
-        if (const auto* ack = std::get_if<Acknowledgement>(&*part)) said.acknowledgements[to] = *ack;
+        if (const auto* ack = std::get_if<Acknowledgement>(&*part)) sent.acknowledgements[to] = *ack;
       return;
     }
-    said.handshakes.emplace(to, hex(datagram));
+    sent.handshakes.emplace(to, hex(datagram));
     const auto* welcome = std::get_if<Welcome>(&read);
     if (welcome != nullptr && welcome->epoch != peer.epoch) peer = {.epoch = welcome->epoch};
   }
 
   void answer(std::uint64_t now, const std::optional<Error>& error) {
-    Said said;
-    while (const auto datagram = server_->poll_datagram(now + kPatience)) hear(datagram->peer, datagram->bytes, said);
+    Sent sent;
+    while (const auto datagram = server_->poll_datagram(now + kPatience)) hear(datagram->peer, datagram->bytes, sent);
     out_ << R"({"line":)" << lines_++;
     write_clients();
     write_left();
     if (error) out_ << R"(,"error":{"errc":")" << errc_name(error->code) << R"(","rule":")" << error->rule << "\"}";
-    write_acknowledgements(said);
-    if (!said.handshakes.empty()) {
+    write_acknowledgements(sent);
+    if (!sent.handshakes.empty()) {
       List list(out_, "says");
-      for (const auto& [to, bytes] : said.handshakes) list.item() << '[' << to << ",\"" << bytes << "\"]";
+      for (const auto& [to, bytes] : sent.handshakes) list.item() << '[' << to << ",\"" << bytes << "\"]";
     }
     write_devices(now);
     out_ << "}\n";
@@ -161,9 +161,9 @@ class ServerScript {
     List list(out_, "left");
     for (const ServerEvent& event : left) list.item() << '[' << event.client << ',' << static_cast<int>(event.reason) << ']';
   }
-  void write_acknowledgements(const Said& said) {
+  void write_acknowledgements(const Sent& sent) {
     std::optional<List> list;
-    for (const auto& [to, ack] : said.acknowledgements) {
+    for (const auto& [to, ack] : sent.acknowledgements) {
       const auto before = std::exchange(peers_[to].reported, std::pair(ack.newest, ack.missing));
       if (before == peers_[to].reported) continue;
       if (!list) list.emplace(out_, "acknowledges");

@@ -58,12 +58,12 @@ class Block:
         self.where = [tuple(UNIT * c for c in p) for p in grid]
         self.tetrahedra: list[tuple] = []
         for corner in itertools.product(range(SIDE - 1), repeat=3):
-            for way in itertools.permutations(range(3)):
+            for order in itertools.permutations(range(3)):
                 path = [corner]
-                for axis in way:
+                for axis in order:
                     path.append(tuple(c + (a == axis) for a, c in enumerate(path[-1])))
                 tet = [number[p] for p in path]
-                even = way in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+                even = order in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
                 self.tetrahedra.append(tuple(tet if even else [tet[0], tet[2], tet[1], tet[3]]))
         faces = [face for a, b, c, d in self.tetrahedra for face in ((a, c, b), (a, b, d), (b, c, d), (a, d, c))]
         once = {tuple(sorted(face)) for face in faces if sum(sorted(face) == sorted(other) for other in faces) == 1}

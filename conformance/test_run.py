@@ -349,13 +349,13 @@ class DevicePathTest(unittest.TestCase):
         self.client.scene = self.server.scene = self.scene
         self.client.drives()
         self.server.offer(b"", True)
-        self.server.take_said(STATE, (1,))
+        self.server.take_received(STATE, (1,))
         self.rng = random.Random(65)
         self.device = Device(self.scene.position_exp, self.scene.tick_rate, 0.0)
-        self.way: list[tuple] = []                          # when, to whom, datagram
+        self.in_flight: list[tuple] = []                    # when, to whom, datagram
 
     def send(self, tick: int, to: Epoch, datagram: bytes) -> None:
-        self.way.append((tick + self.rng.randrange(5, 25), len(self.way), to, datagram))
+        self.in_flight.append((tick + self.rng.randrange(5, 25), len(self.in_flight), to, datagram))
 
     def step(self, tick: int, moves: bool) -> None:
         now = 1000 * tick
@@ -368,7 +368,7 @@ class DevicePathTest(unittest.TestCase):
         for end, other in ((self.client, self.server), (self.server, self.client)):
             if end.ack_due is not None and now >= end.ack_due:
                 self.send(tick, other, end.write(now, []))
-        for item in sorted(item for item in self.way if item[0] == tick):
+        for item in sorted(item for item in self.in_flight if item[0] == tick):
             item[2].take(now, item[3])
 
     def test_both_ends_know_the_same_path(self) -> None:

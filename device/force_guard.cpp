@@ -76,7 +76,7 @@ Vec3 ForceGuard::fade(Time since, Time now) noexcept {
   return std::clamp(left, 0.0, 1.0) * fade_from_;
 }
 
-/// The force written last acted along the way to this reading.
+/// The force written last acted along the path to this reading.
 void ForceGuard::observe(const Reading& reading) noexcept {
   const Vec3& place = reading.sample.position;
   moved_ = has_place_ ? place - place_ : Vec3{};
@@ -87,11 +87,11 @@ void ForceGuard::observe(const Reading& reading) noexcept {
 
 /// A damper that takes back, if the device goes on moving as it did, all that it gave away: no harder than one that is stable itself.
 Vec3 ForceGuard::dissipate(const Vec3& force, Time elapsed) noexcept {
-  const double way = norm(moved_);
-  if (!limits_.passivity || energy_ <= 0 || elapsed == 0 || way < kLeastMove) return force;
+  const double distance = norm(moved_);
+  if (!limits_.passivity || energy_ <= 0 || elapsed == 0 || distance < kLeastMove) return force;
   note(GuardAction::passivity);
-  const double strength = std::min(energy_ / way, kMostDamping * way / seconds(elapsed));  // [N] along the way
-  return force - (strength / way) * moved_;
+  const double strength = std::min(energy_ / distance, kMostDamping * distance / seconds(elapsed));  // [N] along the path
+  return force - (strength / distance) * moved_;
 }
 
 Vec3 ForceGuard::clamp(const Vec3& force) noexcept {

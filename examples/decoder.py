@@ -202,9 +202,9 @@ class Decoder:
         scene, moving, several = self.scene, self.scene.moving, len(self.scene.moving) > 1
         sequence, = Bytes(packet, "R-PKT-2").numbers("H")
         behind = (self.newest - sequence) % 65536
-        overtaken = bool(self.kept) and behind <= 127
-        number = self.newest - behind if overtaken else self.newest + 1 + (sequence - self.newest - 1) % 65536
-        require(not overtaken or (number > min(self.kept) and number not in self.kept), "R-PKT-5")
+        reordered = bool(self.kept) and behind <= 127
+        number = self.newest - behind if reordered else self.newest + 1 + (sequence - self.newest - 1) % 65536
+        require(not reordered or (number > min(self.kept) and number not in self.kept), "R-PKT-5")
         payload = Payload(packet[2:])
         key = payload.bit("KEY[1]")
         baseline_delta = payload.magnitude("BASELINE") if not key and scene.baseline_span > 1 else 1
@@ -215,7 +215,7 @@ class Decoder:
         require(key or number - baseline_delta in self.kept, "R-PKT-4")
         base_tick, states = (0, scene.initial) if key else self.kept[number - baseline_delta]
         tick, states, named, i = base_tick + tick_delta, list(states), [], -1
-        require(tick < END_OF_TICKS and (tick <= self.tick if overtaken else key or tick >= self.tick), "R-RIG-1")
+        require(tick < END_OF_TICKS and (tick <= self.tick if reordered else key or tick >= self.tick), "R-RIG-1")
         require(1 <= count <= len(moving), "R-RIG-3")
         for _ in range(count):
             i += 1 + (payload.magnitude("GAP") if several else 0)
@@ -229,11 +229,11 @@ class Decoder:
             named.append(moving[i])
         require(len(payload.data) <= payload.position, "R-RNG-2")
         require(payload.data[-1:] != b"\0", "R-RNG-3")
-        restarts = not overtaken and key and (number - self.newest > 32767 or tick < self.tick)
+        restarts = not reordered and key and (number - self.newest > 32767 or tick < self.tick)
         self.kept = {} if restarts else self.kept
         self.kept[number] = (tick, states)
         if len(self.kept) > scene.baseline_span: del self.kept[min(self.kept)]
-        if not overtaken: self.tick, self.states, self.newest = tick, states, number
+        if not reordered: self.tick, self.states, self.newest = tick, states, number
         return named
 
 # ---- File (80) ------------------------------------------------------------------------------------------------------

@@ -16,7 +16,7 @@ namespace {
 constexpr int kDelay = 20;    // [ticks] = [ms], each way
 constexpr int kPlayout = 50;  // [ticks] between truth and shown state
 
-struct OnItsWay {
+struct InFlight {
   int arrives = 0;
   std::vector<std::uint8_t> bytes;
 };
@@ -45,7 +45,7 @@ int main() {
   sender->set_link({.answer = 2 * kDelay + 1, .loss = 0.1});  // as measured; here it is known
 
   std::mt19937_64 random(1);
-  std::deque<OnItsWay> link;
+  std::deque<InFlight> link;
   std::deque<Acknowledgement> back;
   int sent = 0, lost = 0, refused = 0, over = 0;
   for (int tick = 0; tick < 10000; ++tick) {

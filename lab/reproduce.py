@@ -13,7 +13,7 @@ import sys
 import typing
 
 from common import arguments, figure, program, table
-from thesis import delay, limits, numbers, rates, signals, touch, ways
+from thesis import delay, interpolations, limits, numbers, rates, signals, touch
 
 
 class Figure(typing.NamedTuple):
@@ -26,7 +26,8 @@ class Figure(typing.NamedTuple):
 FIGURES = {
     "fig3.3": Figure(signals.traffic, "why updates are sent while a cube is pushed"),
     "fig3.6": Figure(rates.architectures, "object states or forces"),
-    "fig3.8": Figure(ways.ways, "ways of interpolation", "The figure shows preferences, which need people: they liked linear best."),
+    "fig3.8": Figure(interpolations.interpolations, "kinds of interpolation",
+                     "The figure shows preferences, which need people: they liked linear best."),
     "fig3.10": Figure(rates.adjusted, "updates at the deadbands that the subjects chose",
                       "The deadbands are those of the thesis's subjects; the rates are ours."),
     "fig3.11": Figure(signals.interpolation, "the force with and without interpolation"),

@@ -7,7 +7,7 @@
 ///
 /// v_p is the speed of the device against f_s: motion along a surface stretches nothing. Equation 4.31 takes force and speed along the
 /// motion, which is the same where they are parallel. Who does not go against the force feels no delay.
-/// A deformable object follows a fraction K < 1 of the way only (eq. 4.54) and tolerates 1 / K times as much.
+/// A deformable object follows a fraction K < 1 of the displacement only (eq. 4.54) and tolerates 1 / K times as much.
 #pragma once
 
 #include <array>

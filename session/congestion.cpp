@@ -23,7 +23,7 @@ constexpr std::uint64_t kFreeRate = 100'000'000;  // [bit/s] from which on there
 
 // Of pieces of a declaration.
 constexpr std::uint64_t kFirstGap = 500;  // [us]: 16 Mbit/s
-constexpr std::uint64_t kFirstWindow = 16, kFewest = 4, kMostOnTheirWay = 800;
+constexpr std::uint64_t kFirstWindow = 16, kFewest = 4, kMostInFlight = 800;
 constexpr std::uint64_t kMostMore = 16;       // 1/32 of the rate
 constexpr std::int64_t kPieceQueue = 5'000;   // [us] on the line, at which fewer go
 constexpr std::uint64_t kRecent = 1'000'000;  // [us]
@@ -58,7 +58,7 @@ std::uint64_t LinePace::gap() const noexcept {
 std::uint64_t LinePace::window() const noexcept {
   if (is_blind_) return kFewest;
   if (!gaps_.value()) return kFirstWindow;
-  return std::min(kFewest + static_cast<std::uint64_t>(least_ + kAnswer) / gap(), kMostOnTheirWay);
+  return std::min(kFewest + static_cast<std::uint64_t>(least_ + kAnswer) / gap(), kMostInFlight);
 }
 
 void LinePace::sent(std::uint64_t number, std::uint64_t now) noexcept {
@@ -67,20 +67,20 @@ void LinePace::sent(std::uint64_t number, std::uint64_t now) noexcept {
   first_sent_ = static_cast<std::int64_t>(now);
 }
 
-void LinePace::feedback(const Feedback& said, const RoundTrip& trip, std::uint64_t now) noexcept {
-  if (first_number_ == 0 || said.number < first_number_) return;
+void LinePace::feedback(const Feedback& report, const RoundTrip& trip, std::uint64_t now) noexcept {
+  if (first_number_ == 0 || report.number < first_number_) return;
   is_blind_ = false;
-  recent_.add(said.arrived - said.sent, now);
+  recent_.add(report.arrived - report.sent, now);
   least_ = trip.least;
   variation_ = trip.variation;
   queue_ = *recent_.value() - least_;
-  const Mark to{said.number, arrived_, said.sent, said.arrived};
-  if (!mark_ && said.number > first_number_) begin(to, now);
+  const Mark to{report.number, arrived_, report.sent, report.arrived};
+  if (!mark_ && report.number > first_number_) begin(to, now);
   if (mark_) measure(to, now);
   else mark_ = to;
   if (has_queue()) more_ = 1;
-  if (said.number < round_ends_) return;
-  const bool is_first = std::exchange(round_ends_, said.newest_sent) == 0;
+  if (report.number < round_ends_) return;
+  const bool is_first = std::exchange(round_ends_, report.newest_sent) == 0;
   if (!is_first && !has_queue()) more_ = std::min(2 * more_, kMostMore);
 }
 
@@ -131,7 +131,7 @@ void LineRate::round_trip(const RoundTrip& trip, std::int64_t sample, std::uint6
 
 bool LineRate::is_jammed() const noexcept { return recent_.value() && queue() > 4 * limit(); }
 
-/// What has arrived since the last measurement, and how long that took: the way back counts as the same.
+/// What has arrived since the last measurement, and how long that took: the delay back counts as the same.
 void LineRate::measure(std::uint64_t now) noexcept {
   const auto time = static_cast<std::int32_t>(newest_.at - mark_.at);
   if (time < kShortest) return;
@@ -158,7 +158,7 @@ void LineRate::speed_up() noexcept {
   rate_ += rate_ / (is_near ? 256 : 16);
 }
 
-/// What stays as it is while less and less is sent is no queue: the way has become longer.
+/// What stays as it is while less and less is sent is no queue: the delay has become longer.
 bool LineRate::is_longer(std::int64_t queue) noexcept {
   const bool is_same = queue > limit() && std::abs(queue - first_queue_) < kDrained;
   if (!is_same) first_queue_ = queue, slowed_ = 0;
@@ -193,7 +193,7 @@ void Congestion::begin(std::uint64_t now) noexcept {
   was_held_ = answered_ = waits_ = narrowed_ = false;
 }
 
-double Congestion::widening() const noexcept { return std::exp2(0.5 * steps_); }
+double Congestion::bound_scale() const noexcept { return std::exp2(0.5 * steps_); }
 
 /// Of time, as ticks may be of any length.
 Congestion::Period Congestion::judge() noexcept {
@@ -232,7 +232,7 @@ bool Congestion::tick(bool held, bool shapes, std::uint64_t now) noexcept {
   was_held_ = held;
   if (now < since_ + kPeriod) return false;
   const bool changes = step(judge());
-  so_far_.widest = std::max(so_far_.widest, widening());
+  so_far_.largest = std::max(so_far_.largest, bound_scale());
   since_ = now;
   ticks_ = held_ = waits_begun_ = shapes_ = left_out_ = 0;
   answered_ = false;

@@ -63,17 +63,17 @@ class LinePace {
   explicit LinePace(std::uint64_t least_gap) noexcept : least_gap_(std::max(least_gap, kLeastGap)) {}
   static constexpr std::uint64_t kLeastGap = 80;  ///< [us]: 100 Mbit/s
 
-  std::uint64_t window() const noexcept;                        ///< pieces that may be on their way
+  std::uint64_t window() const noexcept;                        ///< pieces that may be in flight
   std::uint64_t gap() const noexcept;                           ///< [us] from piece to piece
   void sent(std::uint64_t number, std::uint64_t now) noexcept;  ///< a piece, in a datagram of this number
   void arrived() noexcept { ++arrived_; }                       ///< one more of them, as is known from now on
 
-  /// What an acknowledgement that measured a round trip says of its `newest`.
+  /// What an acknowledgement that measured a round trip reports of its `newest`.
   struct Feedback {
     std::uint64_t number = 0, newest_sent = 0;  ///< of this datagram, of the last that was sent
-    std::int64_t sent = 0, arrived = 0;  ///< [us] both by the own clock: when it went, and came there, later by the way back
+    std::int64_t sent = 0, arrived = 0;  ///< [us] both by the own clock: when it went, and came there, later by the delay back
   };
-  void feedback(const Feedback& said, const RoundTrip& trip, std::uint64_t now) noexcept;
+  void feedback(const Feedback& report, const RoundTrip& trip, std::uint64_t now) noexcept;
   void timed_out() noexcept { is_blind_ = true; }  ///< no feedback for too long
 
  private:
@@ -102,7 +102,7 @@ class LinePace {
 };
 
 // ==== line rate ====
-// How fast datagrams may go to a client over a way whose rate nobody has stated: no limit until a queue shows what it carries.
+// How fast datagrams may go to a client over a link whose rate nobody has stated: no limit until a queue shows what it carries.
 // spec/70-session.md section 9.
 
 class LineRate {
@@ -114,7 +114,7 @@ class LineRate {
   void round_trip(const RoundTrip& trip, std::int64_t sample, std::uint64_t number, std::uint64_t now) noexcept;
   void tick(bool held, std::uint64_t now) noexcept;      ///< in   held  as Congestion::tick()
   std::uint64_t rate() const noexcept { return rate_; }  ///< [bit/s]; 0: no limit
-  /// The queue on the way is so long that nothing should go but a packet each 50 ms.
+  /// The queue of the link is so long that nothing should go but a packet each 50 ms.
   bool is_jammed() const noexcept;
 
  private:
@@ -135,7 +135,7 @@ class LineRate {
   std::int64_t queue_ = 0;                        // [us] at its begin
   std::int64_t first_queue_ = 0;                  // [us] of looks that found the same,
   int slowed_ = 0;                                // and how often the rate was lowered between them
-  std::int64_t longer_ = 0;                       // [us] round trip of a way that has become longer
+  std::int64_t longer_ = 0;                       // [us] round trip of a link whose delay has become longer
   bool held_ = false, has_news_ = false;          // in it
   RoundTrip trip_;
   std::uint32_t bytes_ = 0;                // sent
@@ -147,7 +147,7 @@ class LineRate {
 };
 
 // ==== congestion ====
-// How far the bounds widen while the rate to a client does not carry what they ask for. spec/70-session.md section 9. Internal to the
+// How far the bounds are scaled while the rate to a client does not carry what they ask for. spec/70-session.md section 9. Internal to the
 // library.
 
 /// Looks at half a second at a time: a step wider if what was held back waited for long, or many shapes were left out; a step narrower after
@@ -159,13 +159,13 @@ class Congestion {
 
   void begin(std::uint64_t now) noexcept;  ///< anew; the counters of time go on
   void answered() noexcept { answered_ = true; }
-  /// A tick.   in   held  nothing was sent, as the rate was used up or the way is jammed;  shapes  there are new ones
+  /// A tick.   in   held  nothing was sent, as the rate was used up or the link is jammed;  shapes  there are new ones
   ///           out  true: the factor is another one
   bool tick(bool held, bool shapes, std::uint64_t now) noexcept;
 
   bool waits() const noexcept { return waits_; }  ///< packets wait for their turn
-  double widening() const noexcept;               ///< factor of all bounds: 2^(steps / 2)
-  const Widening& so_far() const noexcept { return so_far_; }
+  double bound_scale() const noexcept;               ///< factor of all bounds: 2^(steps / 2)
+  const BoundScaling& so_far() const noexcept { return so_far_; }
 
  private:
   enum class Period : std::uint8_t { congested, busy, calm, unknown };
@@ -178,7 +178,7 @@ class Congestion {
   bool was_held_ = false, answered_ = false, waits_ = false;
   std::uint32_t calm_ = 0, patience_ = 1;  // periods: so far, before a step narrower
   bool narrowed_ = false;                  // by the last step, and nothing speaks against it so far
-  Widening so_far_;
+  BoundScaling so_far_;
 };
 
 }  // namespace tactus

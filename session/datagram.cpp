@@ -53,45 +53,45 @@ Result<void> finished(const ByteReader& reader) noexcept {
 }
 
 template <class T>
-Result<Datagram> handshake(const ByteReader& reader, T said) noexcept {
+Result<Datagram> handshake(const ByteReader& reader, T message) noexcept {
   TACTUS_CHECK(finished(reader));
-  return Datagram(std::move(said));
+  return Datagram(std::move(message));
 }
 
 Result<Datagram> read_join(ByteReader& r) noexcept {
   const std::uint32_t magic = r.u32();
   const std::uint8_t version = r.u8(), role = r.u8();
-  Join said;
-  said.is_known = version == kVersion;
-  said.nonce = r.u64();
-  if (r.ok() && (magic != kMagic || (said.is_known && role > static_cast<std::uint8_t>(Role::participant))))
+  Join message;
+  message.is_known = version == kVersion;
+  message.nonce = r.u64();
+  if (r.ok() && (magic != kMagic || (message.is_known && role > static_cast<std::uint8_t>(Role::participant))))
     return fail(Errc::unsupported, "R-SES-9", 8 * kHeadSize);
   const bool is_short = r.bit_offset() / 8 + r.remaining() < kLeastJoin - kCheckSize;
   if (r.ok() && is_short) return fail(Errc::truncated, "R-SES-3", r.bit_offset());
-  if (r.ok() && !said.is_known) return Datagram(said);
-  said.role = static_cast<Role>(role);
-  said.token = r.u64();
-  said.seat = r.u8();
-  said.state_limit = r.varint();
-  said.header_limit = r.varint();
+  if (r.ok() && !message.is_known) return Datagram(message);
+  message.role = static_cast<Role>(role);
+  message.token = r.u64();
+  message.seat = r.u8();
+  message.state_limit = r.varint();
+  message.header_limit = r.varint();
   const std::uint64_t padding = r.bit_offset();
   const auto zeros = r.bytes(r.remaining());
   if (std::ranges::any_of(zeros, [](std::uint8_t byte) { return byte != 0; })) return fail(Errc::malformed, "R-SES-3", padding);
-  return handshake(r, said);
+  return handshake(r, message);
 }
 
 Result<Datagram> read_welcome(ByteReader& r) noexcept {
-  Welcome said;
-  said.nonce = r.u64();
-  said.serial = r.varint();
-  said.epoch = r.u64();
-  said.client = r.u16();
-  said.size = r.varint();
-  said.hash = r.u64();
-  said.start = r.varint();
-  said.world = r.u64();
-  if (r.ok() && said.start >= kEndOfTime) return fail(Errc::malformed, "R-SES-3", r.bit_offset());
-  return handshake(r, said);
+  Welcome message;
+  message.nonce = r.u64();
+  message.serial = r.varint();
+  message.epoch = r.u64();
+  message.client = r.u16();
+  message.size = r.varint();
+  message.hash = r.u64();
+  message.start = r.varint();
+  message.world = r.u64();
+  if (r.ok() && message.start >= kEndOfTime) return fail(Errc::malformed, "R-SES-3", r.bit_offset());
+  return handshake(r, message);
 }
 
 Result<LeaveReason> read_reason(ByteReader& r) noexcept {
@@ -344,9 +344,9 @@ std::span<const std::uint8_t> DatagramWriter::with_check(std::size_t size, std::
   return std::span(bytes_).first(Put(bytes_, size).integer(check, 4).at());
 }
 
-std::span<const std::uint8_t> DatagramWriter::write(const Datagram& said, std::uint64_t epoch) noexcept {
+std::span<const std::uint8_t> DatagramWriter::write(const Datagram& message, std::uint64_t epoch) noexcept {
   Put to(bytes_, 0);
-  std::visit([&](const auto& d) { put(to, d); }, said);
+  std::visit([&](const auto& d) { put(to, d); }, message);
   return with_check(to.at(), epoch);
 }
 

@@ -86,7 +86,7 @@ struct PiecePart {
   std::span<const std::uint8_t> bytes;
 };
 
-/// How far the client is. It also keeps the session alive, and asks for an answer.
+/// How far the client is. It also keeps the session alive, and is ack-eliciting.
 struct StatePart {
   std::uint8_t live = 0;  ///< 1: it holds the declaration, and wants packets
 };
@@ -189,7 +189,7 @@ class DatagramWriter {
   explicit DatagramWriter(Direction direction) noexcept : direction_(direction) {}
 
   /// One that is not numbered. The span is valid until the next call.   time O(1); no allocation
-  std::span<const std::uint8_t> write(const Datagram& said, std::uint64_t epoch = 0) noexcept;
+  std::span<const std::uint8_t> write(const Datagram& message, std::uint64_t epoch = 0) noexcept;
 
   /// Begin a numbered one.
   void begin(std::uint64_t number) noexcept;

@@ -64,15 +64,15 @@ Result<std::uint64_t> Exchange::receive(std::uint64_t now, const Numbered& datag
 }
 
 Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
-  if (const auto* said = std::get_if<Acknowledgement>(&part)) {
-    TACTUS_CHECK(acknowledged(*said, reading));
+  if (const auto* ack = std::get_if<Acknowledgement>(&part)) {
+    TACTUS_CHECK(acknowledged(*ack, reading));
     return true;
   }
   const bool drives = path && direction_ == Direction::down;
-  const Asks asks = std::holds_alternative<StatePart>(part)   ? drives ? Asks::soon : Asks::now
-                    : std::holds_alternative<ClockPart>(part) ? Asks::never
-                                                              : Asks::soon;
-  reading.asks = std::max(reading.asks, asks);
+  const AckTiming ack_timing = std::holds_alternative<StatePart>(part)   ? drives ? AckTiming::soon : AckTiming::now
+                    : std::holds_alternative<ClockPart>(part) ? AckTiming::never
+                                                              : AckTiming::soon;
+  reading.ack_timing = std::max(reading.ack_timing, ack_timing);
   if (const auto* fragment = std::get_if<FragmentPart>(&part)) {
     TACTUS_CHECK(take(*fragment, reading));
     return true;
@@ -111,7 +111,7 @@ void Exchange::set_waits(bool waits) noexcept {
   if (std::exchange(waits_, waits) != waits) report_link();
 }
 
-Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& reading) noexcept {
+Result<void> Exchange::acknowledged(const Acknowledgement& ack, Reading& reading) noexcept {
   const auto arrived = [&](std::uint64_t number) {
     progress_at_ = reading.now;
     const Slot& slot = slots_[number % slots_.size()];
@@ -135,7 +135,7 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
     wants_key_ = wants_key_ || (slot.number == number && slot.layered);
     lose(number, reading.now);
   };
-  TACTUS_CHECK(sent_.acknowledge(said, reading.now, arrived, lost));
+  TACTUS_CHECK(sent_.acknowledge(ack, reading.now, arrived, lost));
   if (pieces && sent_.round_trip())
     sent_.lose(kPieceReorder,
                reading.now - static_cast<std::uint64_t>(sent_.round_trip()->smoothed * 5 / 4 + sent_.round_trip()->variation),
@@ -144,12 +144,12 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
     path->settle(sent_.highest_acknowledged(), [this](std::uint64_t number) { return sent_.has_arrived(number); });
   reading.heard.round_trip = sent_.sample();
   if (sent_.sample()) report_link();
-  if (sent_.sample() && pieces) pace_pieces(said, reading.now);
+  if (sent_.sample() && pieces) pace_pieces(ack, reading.now);
   return {};
 }
 
-void Exchange::pace_pieces(const Acknowledgement& said, std::uint64_t now) noexcept {
-  const std::int64_t arrived = static_cast<std::int64_t>(now) - std::int64_t{16} * said.held;
+void Exchange::pace_pieces(const Acknowledgement& ack, std::uint64_t now) noexcept {
+  const std::int64_t arrived = static_cast<std::int64_t>(now) - std::int64_t{16} * ack.held;
   pieces->pace.feedback({.number = sent_.highest_acknowledged(),
                      .newest_sent = sent_.newest(),
                      .sent = arrived - *sent_.sample(),
@@ -172,7 +172,7 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
     return false;
   }
   const bool is_rigid = decoded->substream == 0;
-  if (is_of_deformable(*receiver->scene(), decoded->substream)) reading.asks = Asks::now;
+  if (is_of_deformable(*receiver->scene(), decoded->substream)) reading.ack_timing = AckTiming::now;
   if (is_rigid && number < std::min(rigid_heard_, reading.heard.number)) reading.heard.is_copy = true;
   if (!reading.heard.is_copy) reading.heard.oldest = std::min(reading.heard.oldest.value_or(decoded->tick), decoded->tick);
   took(*decoded, packet.size(), reading);
@@ -247,7 +247,7 @@ Result<void> Exchange::take(const FragmentPart& fragment, Reading& reading) noex
 
 void Exchange::finish(const Reading& reading) noexcept {
   if (!reading.complete) return;
-  received_.accept(reading.heard.number, reading.now, reading.asks, own_patience());
+  received_.accept(reading.heard.number, reading.now, reading.ack_timing, own_patience());
   if (receiver) receiver->skip_number(reading.heard.number);
 }
 
@@ -263,7 +263,7 @@ bool Exchange::add_piece(DatagramWriter& writer, std::uint64_t number, std::uint
 }
 
 std::optional<std::uint64_t> Exchange::pieces_due() const noexcept {
-  if (!pieces || pieces->on_their_way() == 0) return std::nullopt;
+  if (!pieces || pieces->in_flight() == 0) return std::nullopt;
   const auto oldest = sent_.oldest();
   return oldest ? std::optional(*oldest + (patience() << timeouts_)) : std::nullopt;
 }
@@ -312,7 +312,7 @@ bool Exchange::misses_layers(std::uint64_t now) const noexcept {
 
 /// Nothing was acknowledged for long.
 bool Exchange::is_cut_off(std::uint64_t now) const noexcept {
-  return asked_ > sent_.highest_acknowledged() && now > progress_at_ + std::max(kSilence, 4 * patience());
+  return eliciting_ > sent_.highest_acknowledged() && now > progress_at_ + std::max(kSilence, 4 * patience());
 }
 
 std::uint64_t Exchange::next_send(std::uint64_t wanted) const noexcept {
@@ -399,10 +399,10 @@ bool Exchange::shapes_come_in_time() const noexcept {
 /// A shape has a use until its tick is shown, and a little longer a packet of rigid objects that no other waits for. Otherwise all of them
 /// wait for one that is missing; but after an outage a key packet is there sooner than all of them.
 Resends::Latest Exchange::latest() const noexcept {
-  const auto way = static_cast<std::uint64_t>(sent_.round_trip()->least / 2);
-  return {.rigid = repairs_ ? std::max({kLatestRigid, 4 * patience(), 2 * playout_}) : way + playout_ + kBelated,
+  const auto one_way = static_cast<std::uint64_t>(sent_.round_trip()->least / 2);
+  return {.rigid = repairs_ ? std::max({kLatestRigid, 4 * patience(), 2 * playout_}) : one_way + playout_ + kBelated,
           .shape = shapes_come_in_time() ? std::max(kLatestShape, playout_) : 0,
-          .way = way};
+          .one_way = one_way};
 }
 
 /// Where all packets wait for one whose copies are lost, too, and another round takes long, there are more of them.
@@ -423,17 +423,17 @@ const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
   return resends_->next(now, latest());
 }
 
-/// [us] when the newest datagram that asks counts as lost: none after it would show it.
+/// [us] when the newest ack-eliciting datagram counts as lost: none after it would show it.
 std::optional<std::uint64_t> Exchange::tail_due() const noexcept {
-  if (!copies_rigid() || !sent_.round_trip() || asked_ <= sent_.highest_acknowledged()) return std::nullopt;
-  return std::max(asked_at_, tail_at_) + patience();
+  if (!copies_rigid() || !sent_.round_trip() || eliciting_ <= sent_.highest_acknowledged()) return std::nullopt;
+  return std::max(eliciting_at_, tail_at_) + patience();
 }
 
 void Exchange::watch_tail(std::uint64_t now) noexcept {
   const auto due = tail_due();
   if (!due || now < *due) return;
   tail_at_ = now;
-  lose(asked_, now);
+  lose(eliciting_, now);
 }
 
 void Exchange::want_key(std::uint64_t now) noexcept {
@@ -497,16 +497,16 @@ bool Exchange::add_packets(std::uint64_t number, std::uint64_t now) noexcept {
   return added;
 }
 
-std::span<const std::uint8_t> Exchange::end(std::uint64_t now, bool asks) noexcept {
+std::span<const std::uint8_t> Exchange::end(std::uint64_t now, bool is_eliciting) noexcept {
   const std::uint64_t number = *sent_.next();
-  asks = add_packets(number, now) || asks;
-  asks = add_copies(number, now) || asks;
+  is_eliciting = add_packets(number, now) || is_eliciting;
+  is_eliciting = add_copies(number, now) || is_eliciting;
   if (writer_.empty()) {  // all were too large
     skip_number(now);
     return {};
   }
-  if (asks && asked_ <= sent_.highest_acknowledged()) progress_at_ = now;
-  if (asks) asked_ = number, asked_at_ = now;
+  if (is_eliciting && eliciting_ <= sent_.highest_acknowledged()) progress_at_ = now;
+  if (is_eliciting) eliciting_ = number, eliciting_at_ = now;
   sent_.send(now);
   sent_at_ = now;
   const auto datagram = writer_.finish(epoch_);

@@ -50,8 +50,8 @@ class Exchange {
     std::uint64_t number = 0;            ///< of the datagram
     std::optional<std::int64_t> tick;    ///< newest of the packets that were decoded
     std::optional<std::int64_t> oldest;  ///< oldest of them
-    bool is_copy = false;                ///< one of rigid objects was a copy: its tick says nothing about the way
-    /// Of the packets that were held until now, those with the fastest and the slowest way.
+    bool is_copy = false;                ///< one of rigid objects was a copy: its tick says nothing about the delay
+    /// Of the packets that were held until now, those with the shortest and the longest delay.
     struct Arrival {
       std::int64_t tick = 0;
       std::uint64_t at = 0;  ///< [us]
@@ -94,8 +94,8 @@ class Exchange {
     if (!wanted && !has_packets() && !is_acknowledgement_due(now) && !next_copy(now)) return std::nullopt;
     const auto number = begin(now, wanted);
     if (!number) return std::nullopt;
-    const bool asks = extras(writer_, *number);
-    const auto datagram = end(now, asks);
+    const bool is_eliciting = extras(writer_, *number);
+    const auto datagram = end(now, is_eliciting);
     return datagram.empty() ? std::nullopt : std::optional(datagram);
   }
 
@@ -110,21 +110,21 @@ class Exchange {
   std::uint64_t sent_at() const noexcept { return sent_at_; }    ///< [us] when the last one went
   /// [us] since when an answer is missing; nothing: none is
   std::optional<std::uint64_t> unanswered() const noexcept {
-    return asked_ > sent_.highest_acknowledged() ? std::optional(progress_at_) : std::nullopt;
+    return eliciting_ > sent_.highest_acknowledged() ? std::optional(progress_at_) : std::nullopt;
   }
-  std::uint64_t asked_at() const noexcept { return asked_at_; }  ///< [us] when the last one went that must be acknowledged
+  std::uint64_t eliciting_at() const noexcept { return eliciting_at_; }  ///< [us] when the last one went that must be acknowledged
   void hold_tick() noexcept { ++traffic_.ticks_held; }           ///< instead of submit(): nothing may be sent
   void set_waits(bool waits) noexcept;                           ///< packets wait for their turn
   const SentNumbers& sent() const noexcept { return sent_; }
   /// Add the next piece to the datagram of this number.   pre  there is one
   bool add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
   void expire_pieces(std::uint64_t now) noexcept;            ///< what should be acknowledged by now goes again
-  std::optional<std::uint64_t> pieces_due() const noexcept;  ///< [us] when that is; nothing: none is on its way
+  std::optional<std::uint64_t> pieces_due() const noexcept;  ///< [us] when that is; nothing: none is in flight
   /// [us] since when the first packet that is held waits; nothing: none is held.
   std::optional<std::uint64_t> waits_since() const noexcept { return held_ ? held_->waits_since() : std::nullopt; }
   /// The client has asked for a key packet of the rigid objects. It gets one, but not more often than one can be answered.
   void want_key(std::uint64_t now) noexcept;
-  void set_playout(std::uint64_t delay) noexcept { playout_ = delay; }  ///< [us] of the client, as it has said
+  void set_playout(std::uint64_t delay) noexcept { playout_ = delay; }  ///< [us] of the client, as it has reported
   /// On what packets of rigid objects that come build: numbers without one are then not missing.
   void expect(bool repaired) noexcept { repaired_ = repaired; }
   bool is_repaired() const noexcept { return repaired_; }
@@ -135,7 +135,7 @@ class Exchange {
   struct Reading {
     Heard heard;
     std::uint64_t now = 0;
-    Asks asks = Asks::never;
+    AckTiming ack_timing = AckTiming::never;
     bool complete = true;  // all packets in it are decoded, or its fragment is kept
   };
   struct PacketName {
@@ -157,8 +157,8 @@ class Exchange {
 
   Result<std::uint64_t> receive(std::uint64_t now, const Numbered& datagram) noexcept;
   Result<bool> handle(const Part& part, Reading& reading) noexcept;
-  Result<void> acknowledged(const Acknowledgement& said, Reading& reading) noexcept;
-  void pace_pieces(const Acknowledgement& said, std::uint64_t now) noexcept;
+  Result<void> acknowledged(const Acknowledgement& ack, Reading& reading) noexcept;
+  void pace_pieces(const Acknowledgement& ack, std::uint64_t now) noexcept;
   Result<void> take(const FragmentPart& fragment, Reading& reading) noexcept;
   bool decode(std::uint64_t number, std::span<const std::uint8_t> packet, Reading& reading) noexcept;
   bool hold(std::uint64_t number, std::span<const std::uint8_t> packet, const Error& error, std::uint64_t now) noexcept;
@@ -192,7 +192,7 @@ class Exchange {
   const Resends::Kept* next_copy(std::uint64_t now) noexcept;
   bool add_copies(std::uint64_t number, std::uint64_t now) noexcept;
   bool add_copy(const Resends::Kept& copy, std::uint64_t number) noexcept;
-  std::span<const std::uint8_t> end(std::uint64_t now, bool asks) noexcept;
+  std::span<const std::uint8_t> end(std::uint64_t now, bool is_eliciting) noexcept;
 
   Direction direction_;
   unsigned timeouts_ = 0;  // of pieces, since the last that arrived
@@ -211,15 +211,15 @@ class Exchange {
   bool repairs_ = false, repaired_ = true, waits_ = false;
   bool fixed_playout_ = false;       // by its user: known before the first packet
   std::uint64_t playout_ = 0;        // [us] of the client
-  std::uint64_t tail_at_ = 0;        // [us] when the newest datagram that asks was last taken for lost
+  std::uint64_t tail_at_ = 0;        // [us] when the newest ack-eliciting datagram was last taken for lost
   bool wants_chain_ = false;         // packets of rigid objects must begin anew
   std::uint64_t chain_at_ = 0;       // [us] when they did
   std::span<const Packet> packets_;  // of the last submit()
   std::size_t next_packet_ = 0, next_fragment_ = 0;
   std::uint64_t heard_at_, sent_at_;
-  std::uint64_t asked_at_ = 0;       // [us] when a datagram went that asks for an acknowledgement
-  std::uint64_t asked_ = 0;          // highest number that asks
-  std::uint64_t progress_at_ = 0;    // [us] when one was acknowledged, or the first asked
+  std::uint64_t eliciting_at_ = 0;       // [us] when it went
+  std::uint64_t eliciting_ = 0;          // highest ack-eliciting number
+  std::uint64_t progress_at_ = 0;    // [us] when one was acknowledged, or the first ack-eliciting one went
   std::uint64_t layered_ = 0;        // highest number that brings a layer of a mesh
   bool wants_key_ = false;           // a layer is lost
   std::uint64_t key_wanted_at_ = 0;  // [us]

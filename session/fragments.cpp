@@ -24,7 +24,7 @@ Fragments::Packet* Fragments::find(std::uint64_t number, std::uint64_t substream
   return nullptr;
 }
 
-/// Where the fragment belongs; null: nowhere, as all places hold newer packets. So one that gave way never comes back: fragments of it
+/// Where the fragment belongs; null: nowhere, as all places hold newer packets. So one that was dropped never comes back: fragments of it
 /// that were acknowledged are gone.
 Fragments::Packet* Fragments::place_for(std::uint64_t number, const FragmentPart& fragment) noexcept {
   if (Packet* const packet = find(number, fragment.substream)) return packet;
@@ -67,7 +67,7 @@ void Fragments::decoded(const Complete& packet) noexcept { find(packet.number, p
 std::optional<std::uint64_t> PieceSender::next() const noexcept {
   if (count_ >= pace.window()) return std::nullopt;
   for (std::uint64_t index = front_; index < next_; index = (index | 63) + 1) {
-    const std::uint64_t lost = ~(arrived_.word(index) | on_their_way_.word(index)) >> index % 64;
+    const std::uint64_t lost = ~(arrived_.word(index) | in_flight_.word(index)) >> index % 64;
     if (lost == 0) continue;
     const std::uint64_t first = index + static_cast<std::uint64_t>(std::countr_zero(lost));
     if (first < next_) return first;
@@ -84,7 +84,7 @@ std::span<const std::uint8_t> PieceSender::bytes(std::uint64_t index) const noex
 
 void PieceSender::sent(std::uint64_t index) noexcept {
   next_ = std::max(next_, index + 1);
-  on_their_way_.set(index);
+  in_flight_.set(index);
   ++count_;
 }
 
@@ -97,8 +97,8 @@ void PieceSender::arrived(std::uint64_t index) noexcept {
 }
 
 void PieceSender::lost(std::uint64_t index) noexcept {
-  if (index < front_ || !on_their_way_.has(index)) return;
-  on_their_way_.clear(index);
+  if (index < front_ || !in_flight_.has(index)) return;
+  in_flight_.clear(index);
   --count_;
 }
 
@@ -148,7 +148,7 @@ void Resends::settle(Kept& kept) noexcept {
   if (kept.copies > 0) unqueue(static_cast<std::uint16_t>(&kept - kept_.data()));
 }
 
-/// The oldest gives way.
+/// The oldest is dropped.
 void Resends::pop() noexcept {
   Kept& oldest = kept_[first_];
   is_broken_ = is_broken_ || (!oldest.is_settled && oldest.substream == 0);
@@ -200,7 +200,7 @@ const Resends::Kept* Resends::next(std::uint64_t now, const Latest& latest) noex
   for (std::size_t i = 0; i < waiting_.size();) {
     Kept& kept = kept_[waiting_[i]];
     const bool is_rigid = kept.substream == 0;
-    if (now + latest.way > kept.time + (is_rigid ? latest.rigid : latest.shape)) {
+    if (now + latest.one_way > kept.time + (is_rigid ? latest.rigid : latest.shape)) {
       is_broken_ = is_broken_ || is_rigid;
       settle(kept);
       continue;

@@ -69,7 +69,7 @@ class Fragments {
 
 class SentFragments {
  public:
-  static constexpr std::size_t kMost = 32;  ///< packets on their way; the oldest is forgotten, and never counts as arrived
+  static constexpr std::size_t kMost = 32;  ///< packets in flight; the oldest is forgotten, and never counts as arrived
 
   /// time O(1), no allocation.   pre  2 <= count <= kMostFragments
   void send(const Packet& packet, std::size_t count) noexcept {
@@ -120,13 +120,13 @@ class PieceSender {
   LinePace pace;
 
   bool is_done() const noexcept { return front_ == piece_count(bytes_->size()); }
-  /// The next piece to send: one that is lost, or a new one. Nothing: as many are on their way as may be.
+  /// The next piece to send: one that is lost, or a new one. Nothing: as many are in flight as may be.
   std::optional<std::uint64_t> next() const noexcept;
   std::span<const std::uint8_t> bytes(std::uint64_t index) const noexcept;
   void sent(std::uint64_t index) noexcept;     ///< pre  next() has returned it
   void arrived(std::uint64_t index) noexcept;  ///< perhaps again, or after it was lost
   void lost(std::uint64_t index) noexcept;     ///< its newest datagram is
-  std::uint64_t on_their_way() const noexcept { return count_; }
+  std::uint64_t in_flight() const noexcept { return count_; }
 
  private:
   class Set {  // of indices from the front on
@@ -141,8 +141,8 @@ class PieceSender {
   };
   std::shared_ptr<const std::vector<std::uint8_t>> bytes_;
   std::uint64_t front_ = 0, next_ = 0;      // first that has not arrived, first that was never sent
-  std::uint64_t count_ = 0, received_ = 0;  // on their way; that have arrived
-  Set arrived_, on_their_way_;
+  std::uint64_t count_ = 0, received_ = 0;  // in flight; that have arrived
+  Set arrived_, in_flight_;
 };
 
 class PieceReceiver {
@@ -192,7 +192,7 @@ class Resends {
   /// [us] from the first sending of a packet to the arrival of its copy, at most.
   struct Latest {
     std::uint64_t rigid = 0, shape = 0;
-    std::uint64_t way = 0;  ///< from here to the other end
+    std::uint64_t one_way = 0;  ///< from here to the other end
   };
 
   /// Allocates for kKept datagrams of 64 KiB in all and one packet more.   in  largest  packet [bytes]
@@ -202,7 +202,7 @@ class Resends {
   std::uint16_t keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now) noexcept;
   /// The datagram that brought what has this place.
   void arrived(std::uint16_t place, std::uint64_t datagram) noexcept;
-  /// in   copies  that should go, 10 ms apart; none while a newer datagram with it is on its way
+  /// in   copies  that should go, 10 ms apart; none while a newer datagram with it is in flight
   void lost(std::uint16_t place, std::uint64_t datagram, std::uint64_t now, unsigned copies) noexcept;
   /// The copy that goes next.   time O(packets that wait)
   const Kept* next(std::uint64_t now, const Latest& latest) noexcept;

@@ -36,8 +36,8 @@ std::optional<std::uint64_t> SentNumbers::oldest() const noexcept {
   return std::nullopt;
 }
 
-Result<std::uint64_t> SentNumbers::extend(const Acknowledgement& said) const noexcept {
-  const auto behind = static_cast<std::uint16_t>(next_ - 1 - said.newest);
+Result<std::uint64_t> SentNumbers::extend(const Acknowledgement& ack) const noexcept {
+  const auto behind = static_cast<std::uint16_t>(next_ - 1 - ack.newest);
   if (behind >= kMostAhead || behind + std::uint64_t{1} >= next_) return fail(Errc::invalid, "R-SES-6");
   return next_ - 1 - behind;
 }
@@ -129,23 +129,23 @@ Result<std::uint64_t> ReceivedNumbers::extend(std::uint16_t wire) const noexcept
   return number;
 }
 
-void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, Asks asks, const Patience& patience) noexcept {
+void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, AckTiming timing, const Patience& patience) noexcept {
   if (accepted_.is_too_old(number)) return;
   if (number > accepted_.newest()) newest_at_ = now;
   accepted_.add(number);
   if (number > reported_) ++above_reported_;
   else changes_reported_ = true;
   const bool full = ++unreported_ >= kUnreported;
-  if (asks == Asks::never && !full) return;
-  const std::uint64_t usual = asks == Asks::now || full ? now : now + patience.usual;
-  if (!asked_at_) asked_at_ = now;
+  if (timing == AckTiming::never && !full) return;
+  const std::uint64_t usual = timing == AckTiming::now || full ? now : now + patience.usual;
+  if (!eliciting_at_) eliciting_at_ = now;
   const bool is_well = usual > now && !changes_reported_ && above_reported_ == accepted_.newest() - reported_;
-  due_ = is_well ? *asked_at_ + patience.all_is_well : std::min(due_.value_or(usual), usual);
+  due_ = is_well ? *eliciting_at_ + patience.all_is_well : std::min(due_.value_or(usual), usual);
 }
 
 Acknowledgement ReceivedNumbers::acknowledge(std::uint64_t now) noexcept {
   due_.reset();
-  asked_at_.reset();
+  eliciting_at_.reset();
   reported_ = accepted_.newest();
   above_reported_ = 0;
   changes_reported_ = false;

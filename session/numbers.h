@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Numbers of datagrams, sent and received: which arrived, which are lost, how long the way takes. Integers. Internal to the library.
+/// Numbers of datagrams, sent and received: which arrived, which are lost, how long the path takes. Integers. Internal to the library.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,7 @@ class WindowedMinimum {
 };
 
 // ==== sent numbers ====
-// The numbered datagrams that an end has sent: which arrived, which are lost, and how long the way takes. spec/70-session.md sections 4
+// The numbered datagrams that an end has sent: which arrived, which are lost, and how long the path takes. spec/70-session.md sections 4
 // and 7.
 
 class SentNumbers {
@@ -63,15 +63,15 @@ class SentNumbers {
   void send(std::uint64_t now) noexcept;                       ///< the datagram of number next() goes
 
   /// Look at an acknowledgement.
-  /// in   arrived(number), lost(number)  called once for each number, arrived for those said to be lost, too, if they come later
+  /// in   arrived(number), lost(number)  called once for each number, arrived for those reported as lost, too, if they come later
   /// err  invalid R-SES-6: it names a number that was never sent; nothing changes
   template <class Arrived, class Lost>
-  Result<void> acknowledge(const Acknowledgement& said, std::uint64_t now, Arrived&& arrived, Lost&& lost) noexcept {
-    TACTUS_TRY(const std::uint64_t newest, extend(said));
-    measure(newest, said.held, now);
+  Result<void> acknowledge(const Acknowledgement& ack, std::uint64_t now, Arrived&& arrived, Lost&& lost) noexcept {
+    TACTUS_TRY(const std::uint64_t newest, extend(ack));
+    measure(newest, ack.held, now);
     if (mark(newest)) arrived(newest);
     for (std::uint64_t i = 0; i < 64 && newest > i + 1; ++i)
-      if (!(said.missing >> i & 1u) && mark(newest - 1 - i)) arrived(newest - 1 - i);
+      if (!(ack.missing >> i & 1u) && mark(newest - 1 - i)) arrived(newest - 1 - i);
     const std::uint64_t first = next_ > kRemembered ? next_ - kRemembered : 1;
     for (std::uint64_t number = std::max(first, first_open_); number < newest; ++number)
       if (is_lost(number, newest, now)) lost(number);
@@ -92,7 +92,7 @@ class SentNumbers {
     }
   }
 
-  /// What is that far below the highest acknowledged, and went until then, is lost, sooner than acknowledge() says so.
+  /// What is that far below the highest acknowledged, and went until then, is lost, sooner than acknowledge() reports it.
   template <class Lost>
   void lose(std::uint64_t back, std::uint64_t until, Lost&& lost) noexcept {
     const std::uint64_t first = next_ > kRemembered ? next_ - kRemembered : 1;
@@ -122,7 +122,7 @@ class SentNumbers {
     std::uint64_t time = 0;  // [us] when it was sent
     Fate fate = Fate::open;
   };
-  Result<std::uint64_t> extend(const Acknowledgement& said) const noexcept;
+  Result<std::uint64_t> extend(const Acknowledgement& ack) const noexcept;
   void measure(std::uint64_t newest, std::uint16_t held, std::uint64_t now) noexcept;
   bool mark(std::uint64_t number) noexcept;  // arrived; false if that is known
   bool is_lost(std::uint64_t number, std::uint64_t newest, std::uint64_t now) noexcept;
@@ -159,10 +159,10 @@ class NumberWindow {
 };
 
 /// When a datagram is to be acknowledged.
-enum class Asks : std::uint8_t {
+enum class AckTiming : std::uint8_t {
   never,  ///< it holds nothing but acknowledgements and clocks
   soon,
-  now,  ///< a sign of life
+  now,  ///< a keep-alive
 };
 
 class ReceivedNumbers {
@@ -174,13 +174,13 @@ class ReceivedNumbers {
   void receive(std::uint64_t number) noexcept { received_.add(number); }  ///< pre  extend()
 
   /// [us] that an acknowledgement waits for a datagram to ride on: `all_is_well` if every number that the last one did not report has
-  /// come, and none that it said was missing; else `usual`.
+  /// come, and none that it reported missing; else `usual`.
   struct Patience {
     std::uint64_t usual = 0, all_is_well = 0;
   };
   /// A received datagram, all of whose packets are decoded, is to be acknowledged.
   /// in   now  [us]
-  void accept(std::uint64_t number, std::uint64_t now, Asks asks, const Patience& patience) noexcept;
+  void accept(std::uint64_t number, std::uint64_t now, AckTiming timing, const Patience& patience) noexcept;
 
   bool has_news() const noexcept { return due_.has_value(); }
   /// [us] when an acknowledgement should go even if nothing else does
@@ -195,7 +195,7 @@ class ReceivedNumbers {
   NumberWindow received_, accepted_;
   unsigned unreported_ = 0;                          // accepted since the last acknowledgement
   std::uint64_t newest_at_ = 0;                  // [us] when accepted_.newest() came
-  std::optional<std::uint64_t> due_, asked_at_;  // asked_at_: by the first that asks since the last acknowledgement
+  std::optional<std::uint64_t> due_, eliciting_at_;  // eliciting_at_: of the first ack-eliciting one since the last acknowledgement
   std::uint64_t reported_ = 0, above_reported_ = 0;      // newest of the last acknowledgement; how many above it were accepted
   bool changes_reported_ = false;                    // one below it was accepted since
 };

@@ -14,7 +14,7 @@ constexpr std::uint64_t kWelcomeEvery = 250'000;                             // 
 constexpr std::uint64_t kClockEvery = 100'000, kDrivenClockEvery = 500'000;  // [us]
 constexpr std::uint64_t kPieceLag = 2'000;                                   // [us] of pieces that may be made up for
 constexpr std::uint64_t kJammedEvery = 50'000;                               // [us]: packets through a long queue
-constexpr std::uint64_t kUnproven = 10'000'000;                              // [us] for the first datagram in the epoch
+constexpr std::uint64_t kUnvalidated = 10'000'000;                              // [us] for the first datagram in the epoch
 constexpr unsigned kMostFaults = 100;
 constexpr unsigned kLeaves = 3;  // one of them should arrive
 
@@ -23,27 +23,27 @@ constexpr unsigned kLeaves = 3;  // one of them should arrive
 ServerConnection::ServerConnection(std::uint16_t client, const SessionServerOptions& options, std::uint64_t& pieces_at) noexcept
     : client_(client),
       loss_(options.loss),
-      trusts_(options.addresses_are_proven),
+      trusts_(options.addresses_are_validated),
       works_elsewhere_(options.works_elsewhere),
       silence_(options.silence),
       headers_(options.headers),
       piece_time_(options.rate == 0 ? 0 : 8'000'000 * (kLargestDatagram + options.headers) / options.rate),
-      most_widening_(options.widening),
+      max_bound_scale_(options.max_bound_scale),
       most_rate_(options.rate),
       bucket_(options.rate),
-      congestion_(options.widening),
+      congestion_(options.max_bound_scale),
       pieces_at_(pieces_at) {}
 
-void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedScene& served, std::uint64_t epoch,
+void ServerConnection::open(std::uint64_t peer, const Join& message, const ServedScene& served, std::uint64_t epoch,
                             std::uint64_t now) noexcept {
   state_ = *next_state(server_transitions(), SessionState::closed, SessionEvent::open);
   peer_ = peer;
-  join_ = said;
-  proven_ = repeats_welcome_ = outdated_ = false;
+  join_ = message;
+  validated_ = repeats_welcome_ = outdated_ = false;
   left_.reset();
   leaves_ = faults_ = 0;
   wrong_states_ = 0;
-  congestion_ = Congestion(most_widening_);
+  congestion_ = Congestion(max_bound_scale_);
   welcome_.serial = 0;
   token_ = epoch;
   seat_ = 0;
@@ -51,7 +51,7 @@ void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedSc
 }
 
 void ServerConnection::begin_epoch(const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept {
-  const bool replaces = proven_;
+  const bool replaces = validated_;
   outdated_ = false;
   state_ = next_state(server_transitions(), state_, SessionEvent::replaced).value_or(state_);
   served_ = served;
@@ -92,7 +92,7 @@ bool ServerConnection::leave(SessionEvent event, LeaveReason reason) noexcept {
   if (!next) return false;
   state_ = *next;
   leaving_ = reason;
-  leaves_ = event != SessionEvent::left && proven_ ? kLeaves : 0;
+  leaves_ = event != SessionEvent::left && validated_ ? kLeaves : 0;
   if (leaves_ == 0) peer_ = 0;
   return true;
 }
@@ -105,21 +105,21 @@ bool ServerConnection::is_mine(std::span<const std::uint8_t> datagram) const noe
 bool ServerConnection::is_at_fault() const noexcept { return faults_ >= kMostFaults; }
 
 bool ServerConnection::is_silent(std::uint64_t now) const noexcept {
-  return state_ != SessionState::closed && now >= exchange_->heard_at() + (proven_ ? silence_ : kUnproven);
+  return state_ != SessionState::closed && now >= exchange_->heard_at() + (validated_ ? silence_ : kUnvalidated);
 }
 
 Result<void> ServerConnection::handle_datagram(std::uint64_t now, std::span<const std::uint8_t> datagram) noexcept {
-  auto said = read_datagram(datagram, Direction::up);
-  if (said) proven_ = true;
-  if (!said) {
+  auto message = read_datagram(datagram, Direction::up);
+  if (message) validated_ = true;
+  if (!message) {
     ++faults_;
-    return tl::unexpected(said.error());
+    return tl::unexpected(message.error());
   }
-  if (const auto* leave = std::get_if<Leave>(&*said)) {
+  if (const auto* leave = std::get_if<Leave>(&*message)) {
     left_ = leave->reason;
     return {};
   }
-  const Numbered& numbered = std::get<Numbered>(*said);
+  const Numbered& numbered = std::get<Numbered>(*message);
   repeats_welcome_ = false;
   const auto heard = exchange_->handle(now, numbered, [&](const Part& part, const auto&) { return handle(part, now); });
   if (!heard) {
@@ -157,13 +157,13 @@ Result<void> ServerConnection::handle(const Part& part, std::uint64_t now) noexc
   return {};
 }
 
-void ServerConnection::take(const ReportPart& said, std::uint64_t now) noexcept {
+void ServerConnection::take(const ReportPart& report, std::uint64_t now) noexcept {
   constexpr std::uint64_t kLongest = 2'000;  // [ms]: no copy comes later
-  playout_ = 1000 * std::min(said.delay, kLongest);
+  playout_ = 1000 * std::min(report.delay, kLongest);
   exchange_->set_playout(playout_);
-  if ((said.flags & ReportPart::kKey) != 0) exchange_->want_key(now);
+  if ((report.flags & ReportPart::kKey) != 0) exchange_->want_key(now);
   const auto metres = [](std::int32_t c) { return std::ldexp(c, -ReportPart::kViewExponent); };
-  if ((said.flags & ReportPart::kView) != 0) view_ = {metres(said.view[0]), metres(said.view[1]), metres(said.view[2])};
+  if ((report.flags & ReportPart::kView) != 0) view_ = {metres(report.view[0]), metres(report.view[1]), metres(report.view[2])};
 }
 
 /// From where the client looks, in a scene with interest: a participant from its device at least, as soon as that is known.
@@ -176,7 +176,7 @@ void ServerConnection::look() noexcept {
     const RigidState& device = exchange_->receiver->object(0);
     places[count++] = to_pose({device.position, device.rotation}, served_.device->grid.position).position;
   }
-  exchange_->sender->look_from(std::span(places).first(count));
+  exchange_->sender->set_viewpoints(std::span(places).first(count));
 }
 
 /// Before it is live a client knows only a delay that its user has fixed: it must be long enough for a copy.
@@ -254,12 +254,12 @@ bool ServerConnection::take(std::uint64_t now, ClientParts& parts) {
   return true;
 }
 
-void ServerConnection::compare(const HashPart& said) noexcept {
+void ServerConnection::compare(const HashPart& received) noexcept {
   const std::uint64_t newest = exchange_->sent().newest();
-  const std::uint64_t back = static_cast<std::uint16_t>(newest - said.number);
+  const std::uint64_t back = static_cast<std::uint16_t>(newest - received.number);
   for (const KnownHash& known : hashes_) {
-    if (known.number == 0 || known.substream != said.substream || known.number + back != newest) continue;
-    if (known.hash == said.hash) return;
+    if (known.number == 0 || known.substream != received.substream || known.number + back != newest) continue;
+    if (known.hash == received.hash) return;
     ++wrong_states_;
     exchange_->sender->request_key();
     return;
@@ -288,7 +288,7 @@ Result<void> ServerConnection::submit(std::uint64_t now, std::int64_t tick, cons
   if (line_.rate() > 0) bucket_.set_rate(most_rate_ == 0 ? line_.rate() : std::min(line_.rate(), most_rate_), now);
   else bucket_.set_rate(most_rate_, now);
   const bool shapes = std::ranges::any_of(truth.deformables, [](const auto& shape) { return !shape.displacements.empty(); });
-  if (congestion_.tick(held_, shapes, now)) exchange_->sender->set_widening(widening());
+  if (congestion_.tick(held_, shapes, now)) exchange_->sender->set_bound_scale(bound_scale());
   exchange_->set_waits(congestion_.waits());
   if (held_) {
     exchange_->hold_tick();
@@ -302,7 +302,7 @@ Result<void> ServerConnection::submit(std::uint64_t now, std::int64_t tick, cons
 
 /// [us] When the next piece may go; nothing: there is none that may.
 std::optional<std::uint64_t> ServerConnection::piece_due() const noexcept {
-  if (!(proven_ || trusts_) || !exchange_->pieces || !exchange_->pieces->next()) return std::nullopt;
+  if (!(validated_ || trusts_) || !exchange_->pieces || !exchange_->pieces->next()) return std::nullopt;
   return exchange_->next_send(std::max(piece_at_, pieces_at_));
 }
 
@@ -324,7 +324,7 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
     welcome_at_ = now + kWelcomeEvery;
     return writer_.write(welcome_);
   }
-  if (held_) return std::nullopt;  // an acknowledgement would say that what the client has is new
+  if (held_) return std::nullopt;  // an acknowledgement would mean that what the client has is new
   exchange_->expire_pieces(now);
   const bool piece = piece_due().value_or(now + 1) <= now;
   const bool wanted = piece || wants_pace(now) || wants_seat(now);
@@ -348,7 +348,7 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
   return datagram;
 }
 
-/// Each datagram says it until one has arrived.   out  true: it was said
+/// Each datagram has it until one has arrived.   out  true: this one has it
 bool ServerConnection::signal_baselines(DatagramWriter& writer, std::uint64_t number) noexcept {
   if (baselines_number_ > 0 && exchange_->sent().highest_acknowledged() >= baselines_number_) signals_baselines_ = false;
   if (!signals_baselines_ || state_ != SessionState::live || !writer.add(BaselinesPart{1})) return false;
@@ -381,9 +381,9 @@ void ServerConnection::add_seat(DatagramWriter& writer, std::uint64_t number, st
 
 std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
   if (state_ == SessionState::closed) return std::nullopt;
-  std::uint64_t due = exchange_->heard_at() + (proven_ ? silence_ : kUnproven);
+  std::uint64_t due = exchange_->heard_at() + (validated_ ? silence_ : kUnvalidated);
   if (repeats_welcome_ && state_ == SessionState::receiving) due = std::min(due, welcome_at_);
-  if (held_ || !exchange_->sent().next()) return due;  // nothing else may be said, or there is no number left
+  if (held_ || !exchange_->sent().next()) return due;  // nothing else may be sent, or there is no number left
   if (const auto acknowledgement = exchange_->due()) due = std::min(due, *acknowledgement);
   if (pace_ && pace_->waits()) due = std::min(due, pace_at_);
   if (seat_waits_) due = std::min(due, seat_at_);
@@ -421,8 +421,8 @@ ClientStatus ServerConnection::status() const noexcept {
                    .heard = 0,
                    .round_trip = {},
                    .loss = 0,
-                   .widening = widening(),
-                   .widened = congestion_.so_far(),
+                   .bound_scale = bound_scale(),
+                   .bound_scaling = congestion_.so_far(),
                    .traffic = {}};
   if (!exchange_) return out;
   out.heard = exchange_->heard_at();

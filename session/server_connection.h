@@ -30,8 +30,8 @@ struct ServedScene {
   SenderOptions sender;
 
   /// Within the limits of a client.
-  bool fits(const Join& said) const noexcept {
-    return state_bytes(*scene) <= said.state_limit && declaration->size() <= said.header_limit;
+  bool fits(const Join& message) const noexcept {
+    return state_bytes(*scene) <= message.state_limit && declaration->size() <= message.header_limit;
   }
 };
 
@@ -63,15 +63,15 @@ class ServerConnection {
   bool is_free() const noexcept { return state_ == SessionState::closed && leaves_ == 0; }
   const Welcome& welcome() const noexcept { return welcome_; }
 
-  void open(std::uint64_t peer, const Join& said, const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
+  void open(std::uint64_t peer, const Join& message, const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
   void move(std::uint64_t peer) noexcept { peer_ = peer; }
   void seat(std::uint8_t seat) noexcept;
   void shift(std::int64_t shift) noexcept { served_.shift = shift; }
   bool is_outdated() const noexcept { return outdated_; }
   /// A new scene waits until the client has spoken in the epoch that it was welcomed to: no other welcome can reach it before.
   void outdate() noexcept { outdated_ = true; }
-  bool needs_epoch() const noexcept { return outdated_ && proven_ && state_ != SessionState::closed; }
-  bool is_proven() const noexcept { return proven_; }
+  bool needs_epoch() const noexcept { return outdated_ && validated_ && state_ != SessionState::closed; }
+  bool is_validated() const noexcept { return validated_; }
   /// A new scene.   pre  open
   void begin_epoch(const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
   /// Go, if the state permits it. Unless the client has left or may not be there at all, a leave is sent to it.
@@ -86,14 +86,14 @@ class ServerConnection {
 
   bool wants_parts() const noexcept { return parts_ == Parts::wanted; }
   ClientParts ask_parts() noexcept;  ///< pre  wants_parts()
-  /// The client goes live.   out  false: it has gone, or begun anew
+  /// The client goes live.   out  false: it is closed, or has begun anew
   bool take(std::uint64_t now, ClientParts& parts);
   void refuse_parts() noexcept { parts_ = Parts::none; }
   std::optional<Sender> take_old() noexcept { return std::exchange(old_, std::nullopt); }  ///< of an epoch before
 
   /// in   hashes  objects whose states may be hashed in this tick, for all clients: it takes 50 ns each.   pre  live
   Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth, std::size_t& hashes) noexcept;
-  double widening() const noexcept { return congestion_.widening(); }
+  double bound_scale() const noexcept { return congestion_.bound_scale(); }
   std::optional<std::span<const std::uint8_t>> poll(std::uint64_t now) noexcept;
   std::optional<std::uint64_t> next_timeout() const noexcept;
 
@@ -112,9 +112,9 @@ class ServerConnection {
   Result<void> go_live(std::uint64_t now) noexcept;
   ClientParts parts() const noexcept;
   void measured(std::int64_t sample, std::uint64_t now) noexcept;
-  void compare(const HashPart& said) noexcept;
+  void compare(const HashPart& received) noexcept;
   void note_hash(const Packet& packet, std::size_t& hashes) noexcept;
-  void take(const ReportPart& said, std::uint64_t now) noexcept;
+  void take(const ReportPart& report, std::uint64_t now) noexcept;
   void look() noexcept;
   std::optional<DeviceSample> driving_device(std::uint64_t now) noexcept;
   bool signal_baselines(DatagramWriter& writer, std::uint64_t number) noexcept;
@@ -137,8 +137,8 @@ class ServerConnection {
   unsigned faults_ = 0;
   std::uint8_t seat_ = 0;
   bool held_ = false;    // the last tick was not sent
-  bool proven_ = false;  // it knows the epoch: the address is its own
-  bool trusts_;          // the transport has proven it before
+  bool validated_ = false;  // it knows the epoch: the address is its own
+  bool trusts_;          // the transport has validated it before
   bool works_elsewhere_;
   enum class Parts : std::uint8_t { none, wanted, asked };
   Parts parts_ = Parts::none;
@@ -147,9 +147,9 @@ class ServerConnection {
   bool repeats_welcome_ = false;
   bool signals_baselines_ = false;                  // the client does not know yet that they are the acknowledged ones
   bool seat_waits_ = false;                       // for an acknowledgement
-  std::optional<LeaveReason> left_;               // said by the client
+  std::optional<LeaveReason> left_;               // sent by the client
   std::uint64_t silence_, headers_, piece_time_;  // [us], [bytes] around a datagram, [us] of a piece at the rate
-  double most_widening_;
+  double max_bound_scale_;
   std::uint64_t peer_ = 0, token_ = 0;
   Join join_;
   Welcome welcome_;
@@ -171,8 +171,8 @@ class ServerConnection {
   std::uint64_t pace_at_ = 0;       // [us] when its changes go again
   ButtonsPart buttons_;
   std::uint64_t playout_ = 0;                    // [us] that the client reported last
-  std::optional<Vec3> view_;                     // [m] where it said that it looks from
-  std::uint64_t baselines_number_ = 0;           // of the first datagram that said so
+  std::optional<Vec3> view_;                     // [m] where it looks from, by its report
+  std::uint64_t baselines_number_ = 0;           // of the first datagram with the part
   std::uint64_t seat_at_ = 0, seat_number_ = 0;  // [us] when it goes again; of the first datagram with it, 0: none yet
 };
 

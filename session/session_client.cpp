@@ -18,7 +18,7 @@ namespace tactus {
 namespace {
 
 constexpr std::uint64_t kFirstRetry = 100'000, kRejoin = 250'000, kLastRetry = 2'000'000, kJoinFor = 10'000'000;  // [us]
-// [us] from one sign of life to the next: of a participant to whom a force is rendered, over a network that loses or not; of another
+// [us] from one keep-alive to the next: of a participant to whom a force is rendered, over a network that loses or not; of another
 // participant; of an observer while packets come, and at rest.
 constexpr std::uint64_t kRenderedAtLoss = 12'000, kRendered = 25'000, kParticipant = 50'000, kServed = 100'000, kIdle = 1'000'000;
 constexpr std::uint64_t kMoving = 100'000;  // [us] the same, while the place moves that it looks from
@@ -33,8 +33,8 @@ constexpr unsigned kLeaves = 3;            // one of them should arrive
 
 /// An epoch, from its welcome on.
 struct Epoch {
-  Epoch(const Welcome& said, std::uint64_t now)
-      : welcome(said), exchange(Direction::up, said.epoch, now), pieces(said.size, said.hash) {}
+  Epoch(const Welcome& message, std::uint64_t now)
+      : welcome(message), exchange(Direction::up, message.epoch, now), pieces(message.size, message.hash) {}
 
   Welcome welcome;
   Exchange exchange;
@@ -52,13 +52,13 @@ struct SessionClient::Impl {
 
   bool go(SessionEvent event) noexcept;
   void close(SessionEvent event, LeaveReason reason) noexcept;
-  Result<void> welcomed(std::uint64_t now, const Welcome& said) noexcept;
-  Result<void> handle(std::uint64_t now, const Numbered& said) noexcept;
+  Result<void> welcomed(std::uint64_t now, const Welcome& message) noexcept;
+  Result<void> handle(std::uint64_t now, const Numbered& message) noexcept;
   Result<void> take(const Part& part, const Exchange::Heard& heard, std::uint64_t now) noexcept;
   Result<void> complete(std::uint64_t now) noexcept;
   void play(const Exchange::Heard& heard, std::uint64_t now) noexcept;
   bool is_stuck(std::uint64_t now) const noexcept;
-  std::uint64_t sign_due() const noexcept;
+  std::uint64_t keep_alive_due() const noexcept;
   std::uint64_t rejoin_due() const noexcept;
   bool has_buttons_due(std::uint64_t now) const noexcept;
   bool looks() const noexcept;
@@ -77,11 +77,11 @@ struct SessionClient::Impl {
   bool rejoins = false;  // a join went in this silence
   std::uint8_t seat = 0;
   std::uint64_t looked_at = 0;     // [us] of the last call
-  std::uint64_t woke_at = 0;       // [us] of the last after so long that what is known of the ways may be too old
+  std::uint64_t woke_at = 0;       // [us] of the last after so long that what is known of the delays may be too old
   std::unique_ptr<Epoch> current;  // the newest
   std::unique_ptr<Epoch> shown;    // the one before, until the newest is live
-  std::uint64_t sign_at = 0;       // [us] of the last sign of life
-  std::uint64_t live_number = 0;   // of the first datagram that said that the client is live; 0: none did yet
+  std::uint64_t keep_alive_at = 0;       // [us] of the last keep-alive
+  std::uint64_t live_number = 0;   // of the first datagram that reported that the client is live; 0: none did yet
   std::uint64_t packet_at = 0;     // [us] of the last packet
   bool feels = false;              // the device is in contact
   std::optional<HashPart> hash;
@@ -89,7 +89,7 @@ struct SessionClient::Impl {
   std::uint64_t buttons_at = 0;                                // [us] when they go next
   std::uint64_t buttons_number = 0;                            // of the datagram that first brought them; 0: none yet
   bool buttons_wait = false;                                   // for an acknowledgement
-  std::optional<std::array<std::int32_t, 3>> view, view_said;  // where the user looks from
+  std::optional<std::array<std::int32_t, 3>> view, view_reported;  // where the user looks from
   ClockOffset offset;
   ForceFade fade;
   unsigned leaves = 0;
@@ -158,25 +158,25 @@ Result<void> SessionClient::handle_datagram(std::uint64_t now, std::span<const s
   const bool before = is_before_epochs(datagram);
   if (!before && !active) return fail(Errc::checksum, "R-SES-1");
   if (!is_of_epoch(datagram, before ? 0 : in.current->exchange.epoch(), Direction::down)) return fail(Errc::checksum, "R-SES-1");
-  TACTUS_TRY(const Datagram said, read_datagram(datagram, Direction::down));
+  TACTUS_TRY(const Datagram message, read_datagram(datagram, Direction::down));
   if (!before) {
-    if (const auto* numbered = std::get_if<Numbered>(&said)) return in.handle(now, *numbered);
-    if (const auto* leave = std::get_if<Leave>(&said)) in.close(SessionEvent::left, leave->reason);
+    if (const auto* numbered = std::get_if<Numbered>(&message)) return in.handle(now, *numbered);
+    if (const auto* leave = std::get_if<Leave>(&message)) in.close(SessionEvent::left, leave->reason);
     return {};
   }
-  if (const auto* welcome = std::get_if<Welcome>(&said); welcome != nullptr && welcome->nonce == in.nonce)
+  if (const auto* welcome = std::get_if<Welcome>(&message); welcome != nullptr && welcome->nonce == in.nonce)
     return in.welcomed(now, *welcome);
-  if (const auto* refusal = std::get_if<Refusal>(&said); refusal != nullptr && refusal->nonce == in.nonce)
+  if (const auto* refusal = std::get_if<Refusal>(&message); refusal != nullptr && refusal->nonce == in.nonce)
     in.close(SessionEvent::refused, refusal->reason);
   return {};
 }
 
-Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& said) noexcept try {
-  const bool anew = rejoins && said.serial == 0 && said.epoch != token;  // the server does not know the session
-  const bool repeated = current && said.serial <= current->welcome.serial && state != SessionState::joining && !anew;
+Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& message) noexcept try {
+  const bool anew = rejoins && message.serial == 0 && message.epoch != token;  // the server does not know the session
+  const bool repeated = current && message.serial <= current->welcome.serial && state != SessionState::joining && !anew;
   if (repeated || !next_state(client_transitions(), state, SessionEvent::welcomed)) return {};
-  const bool too_large = said.size > options.limits.header_bytes;
-  Welcome taken = said;
+  const bool too_large = message.size > options.limits.header_bytes;
+  Welcome taken = message;
   if (too_large) taken.size = 0;  // nothing of it is to come
   auto next = std::make_unique<Epoch>(taken, now);
   if (state == SessionState::live) shown = std::move(current);
@@ -186,12 +186,12 @@ Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& sai
     close(SessionEvent::rejected, LeaveReason::limits);
     return {};
   }
-  if (said.serial == 0) {
-    token = said.epoch;
+  if (message.serial == 0) {
+    token = message.epoch;
     seat = 0;
   }
   offset = {};
-  sign_at = live_number = 0;
+  keep_alive_at = live_number = 0;
   feels = rejoins = false;
   hash.reset();
   buttons = {};
@@ -202,9 +202,9 @@ Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& sai
   return out_of_memory();
 }
 
-Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& said) noexcept {
+Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& message) noexcept {
   const auto take_part = [&](const Part& part, const Exchange::Heard& heard) { return take(part, heard, now); };
-  TACTUS_TRY(const Exchange::Heard heard, current->exchange.handle(now, said, take_part));
+  TACTUS_TRY(const Exchange::Heard heard, current->exchange.handle(now, message, take_part));
   if (heard.hash) hash = heard.hash;
   if (heard.tick) packet_at = now;
   rejoins = rejoins && current->exchange.unanswered();
@@ -285,28 +285,28 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     return tl::unexpected(begun.error());
   }
   go(SessionEvent::completed);
-  view_said.reset();
+  view_reported.reset();
   shown.reset();
-  sign_at = 0;
+  keep_alive_at = 0;
   note({.kind = ClientEvent::Kind::live});
   return {};
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
 
-/// When the next sign of life goes.
-std::uint64_t SessionClient::Impl::sign_due() const noexcept {
-  if (sign_at == 0) return 0;
+/// When the next keep-alive goes.
+std::uint64_t SessionClient::Impl::keep_alive_due() const noexcept {
+  if (keep_alive_at == 0) return 0;
   // Until the server knows that the client is live, it takes no packet of the device, and acknowledges none.
   if (state == SessionState::live && current->exchange.sent().highest_acknowledged() < live_number)
-    return current->exchange.next_send(sign_at + kParticipant);
-  const std::uint64_t sent = std::max(sign_at, current->exchange.asked_at());
+    return current->exchange.next_send(keep_alive_at + kParticipant);
+  const std::uint64_t sent = std::max(keep_alive_at, current->exchange.eliciting_at());
   const bool served = state == SessionState::receiving || sent < packet_at + kRecent;
   const std::uint64_t times = current->exchange.path ? kSeldom : 1;
   const std::uint64_t rendered = current->exchange.sent().loss() > kSomeLoss ? kRenderedAtLoss : times * kRendered;
   const std::uint64_t pause = feels ? rendered : options.role == Role::participant ? times * kParticipant : served ? kServed : kIdle;
   const std::uint64_t due = current->exchange.next_send(sent + pause);
-  return has_moved() ? std::min(due, current->exchange.next_send(sign_at + kMoving)) : due;
+  return has_moved() ? std::min(due, current->exchange.next_send(keep_alive_at + kMoving)) : due;
 }
 
 /// The server asks for the place that the user looks from.
@@ -318,9 +318,9 @@ bool SessionClient::Impl::looks() const noexcept {
 bool SessionClient::Impl::has_moved() const noexcept {
   constexpr std::int64_t kStep = (std::int64_t{1} << ReportPart::kViewExponent) / 10;
   if (!looks()) return false;
-  for (std::size_t i = 0; view_said && i < 3; ++i)
-    if (std::abs(std::int64_t{(*view)[i]} - (*view_said)[i]) > kStep) return true;
-  return !view_said;
+  for (std::size_t i = 0; view_reported && i < 3; ++i)
+    if (std::abs(std::int64_t{(*view)[i]} - (*view_reported)[i]) > kStep) return true;
+  return !view_reported;
 }
 
 /// pre  live
@@ -331,7 +331,7 @@ ReportPart SessionClient::Impl::report(std::uint64_t now) noexcept {
                  .flags = is_stuck(now) ? ReportPart::kKey : std::uint8_t{0}};
   if (!looks()) return out;
   out.flags |= ReportPart::kView;
-  view_said = view;
+  view_reported = view;
   out.view = *view;
   return out;
 }
@@ -382,7 +382,7 @@ Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample
   return {};
 }
 
-void SessionClient::look_from(const Vec3& place) noexcept {
+void SessionClient::set_viewpoint(const Vec3& place) noexcept {
   std::array<std::int32_t, 3> view{};
   const std::array from{place.x, place.y, place.z};
   for (std::size_t i = 0; i < 3; ++i)
@@ -406,22 +406,22 @@ std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::u
     return in.writer.write(Join{in.options.role, in.nonce, limits.state_bytes, limits.header_bytes, in.token, in.options.seat});
   }
   if (joins) return std::nullopt;
-  const bool sign = now >= in.sign_due(), buttons = in.has_buttons_due(now);
-  return in.current->exchange.poll(now, sign || buttons, [&](DatagramWriter& writer, std::uint64_t number) {
+  const bool keep_alive = now >= in.keep_alive_due(), buttons = in.has_buttons_due(now);
+  return in.current->exchange.poll(now, keep_alive || buttons, [&](DatagramWriter& writer, std::uint64_t number) {
     if (in.buttons_wait) {
       writer.add(in.buttons);
       in.buttons_at = now + kButtonsEvery;
       if (in.buttons_number == 0) in.buttons_number = number;
     }
-    if (sign && in.current->playout) writer.add(in.report(now));
-    if (sign) {
+    if (keep_alive && in.current->playout) writer.add(in.report(now));
+    if (keep_alive) {
       writer.add(StatePart{static_cast<std::uint8_t>(in.state == SessionState::live ? 1 : 0)});
       if (in.state == SessionState::live && in.live_number == 0) in.live_number = number;
-      in.sign_at = now;
+      in.keep_alive_at = now;
     }
     if (in.hash) writer.add(*in.hash);
     in.hash.reset();
-    return sign || in.buttons_wait;
+    return keep_alive || in.buttons_wait;
   });
 }
 
@@ -438,8 +438,8 @@ std::optional<std::uint64_t> SessionClient::next_timeout() const noexcept {
   if (in.state == SessionState::joining) return std::min(in.join_at, in.opened_at + kJoinFor);
   std::uint64_t due = in.current->exchange.heard_at() + in.options.silence;
   due = std::min(due, in.rejoin_due());
-  if (!in.current->exchange.sent().next()) return due;  // there is no number left to say anything with
-  due = std::min(due, in.sign_due());
+  if (!in.current->exchange.sent().next()) return due;  // there is no number left to send anything with
+  due = std::min(due, in.keep_alive_due());
   if (in.buttons_wait) due = std::min(due, in.current->exchange.next_send(in.buttons_at));
   if (const auto acknowledgement = in.current->exchange.due()) due = std::min(due, *acknowledgement);
   return due;
@@ -458,7 +458,7 @@ std::int64_t SessionClient::shown_tick(std::uint64_t now) noexcept {
   return epoch->playout->shown(now);
 }
 
-/// The fastest way up and down, and how much later than the fastest packet the tick is shown. No clock but the own one counts.
+/// The shortest delays up and down, and how much later than the fastest packet the tick is shown. No clock but the own one counts.
 std::optional<std::uint64_t> SessionClient::round_trip_shown(std::uint64_t now) const noexcept {
   const Epoch* const epoch = impl_->shown_epoch();
   if (epoch == nullptr || !epoch->playout) return std::nullopt;

@@ -43,7 +43,7 @@ struct ClientEvent {
   LeaveReason reason = LeaveReason::bye;
 };
 
-/// Threads: one at a time. No call on the way of a datagram allocates but those that bring the declaration; none throws.
+/// Threads: one at a time. No call that handles a datagram allocates but those that bring the declaration; none throws.
 class SessionClient {
  public:
   /// err  as Sender::create: R-API-4 a bound of the device
@@ -63,7 +63,7 @@ class SessionClient {
 
   /// In a scene with interest: where the user looks from [m, world frame], apart from the device of a participant. Objects far from both are sent
   /// less exactly or not at all (Replica::lod()). Say so before open(): an observer is sent all until it has. What is not finite, or beyond 8000 km, does not count.
-  void look_from(const Vec3& place) noexcept;
+  void set_viewpoint(const Vec3& place) noexcept;
 
   std::optional<std::span<const std::uint8_t>> poll_datagram(std::uint64_t now) noexcept;  ///< valid until the next call
   std::optional<ClientEvent> poll_event() noexcept;

@@ -91,9 +91,9 @@ struct RoundTrip {
 };
 
 /// Bounds that the network did not permit to keep.
-struct Widening {
-  double widest = 1;       ///< factor of all bounds
-  std::uint64_t time = 0;  ///< [us] in which they were widened at all
+struct BoundScaling {
+  double largest = 1;      ///< factor of all bounds
+  std::uint64_t time = 0;  ///< [us] in which they were scaled at all
 };
 
 struct PlayoutOptions {
@@ -114,14 +114,14 @@ struct SessionServerOptions {
   std::uint16_t clients = 8;   ///< at a time
   std::uint64_t rate = 0;      ///< [bit/s] to each client, headers included; 0: no limit
   std::uint32_t headers = 28;  ///< [bytes] around a datagram: UDP and IPv4; with the seal 29 more
-  /// Factor by which the bounds of a client widen at most while its rate or its network does not carry what they ask for, 1 to 64.
+  /// Factor by which the bounds of a client are scaled at most while its rate or its network does not carry what they ask for, 1 to 64.
   /// 1: they never do, and the states that do not fit are left out.
-  double widening = 8;
-  std::uint64_t silence = 120'000'000;  ///< [us] after which a client counts as gone
+  double max_bound_scale = 8;
+  std::uint64_t silence = 120'000'000;  ///< [us] after which the session of a client is closed
   std::uint64_t world = 0;              ///< what is simulated, as the clients' programs find it, too; 0: not declared
   /// The transport hands on datagrams only of peers that have answered from their address, as the seal does: the declaration goes with
   /// the welcome, a round trip sooner.
-  bool addresses_are_proven = false;
+  bool addresses_are_validated = false;
   /// What takes longer than a tick may is left to the program: SessionServer::poll_work(). Else it is done within the call that needs it,
   /// which for 10^5 objects or vertices takes 20 to 50 ms of all clients.
   bool works_elsewhere = false;
@@ -133,7 +133,7 @@ struct SessionClientOptions {
   PlayoutOptions playout{};
   DeviceCoding device{};                ///< of a participant
   bool senses_velocity = false;         ///< the samples of the device have one
-  std::uint64_t silence = 120'000'000;  ///< [us] after which the server counts as gone
+  std::uint64_t silence = 120'000'000;  ///< [us] after which the session is closed
   std::uint8_t seat = 0;                ///< that a participant wants, from 1; 0: any
 };
 

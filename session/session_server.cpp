@@ -17,7 +17,7 @@ namespace tactus {
 
 struct SessionServer::Impl {
   Result<void> serve(SharedScene of, std::uint64_t now);
-  Result<void> join(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept;
+  Result<void> join(std::uint64_t now, std::uint64_t peer, const Join& message) noexcept;
   void keep_time(std::uint64_t now, std::int64_t tick) noexcept;
   ServerConnection* find(std::uint64_t peer) noexcept;
   ServerConnection* follow(std::uint64_t peer, std::uint64_t token) noexcept;
@@ -25,7 +25,7 @@ struct SessionServer::Impl {
     if (events.size() < events.capacity()) events.push_back(event);
   }
   void drop(ServerConnection& connection, SessionEvent event, LeaveReason reason) noexcept;
-  Result<Welcome> answer(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept;
+  Result<Welcome> answer(std::uint64_t now, std::uint64_t peer, const Join& message) noexcept;
 
   SessionServerOptions options;
   ServedScene served;
@@ -63,8 +63,8 @@ SessionServer::~SessionServer() = default;
 
 Result<SessionServer> SessionServer::create(SharedScene scene, const SessionServerOptions& options, std::uint64_t entropy,
                                             std::uint64_t now) try {
-  const bool widens = options.widening >= 1 && options.widening <= 64;  // false for NaN
-  if (options.clients == 0 || options.rate > 1'000'000'000'000 || !widens) return fail(Errc::invalid_argument, "R-API-4");
+  const bool scales = options.max_bound_scale >= 1 && options.max_bound_scale <= 64;  // false for NaN
+  if (options.clients == 0 || options.rate > 1'000'000'000'000 || !scales) return fail(Errc::invalid_argument, "R-API-4");
   auto impl = std::make_unique<Impl>();
   impl->options = options;
   impl->options.sender.policy.baseline = Baseline::acknowledged;
@@ -106,7 +106,7 @@ Result<void> SessionServer::replace_scene(SharedScene scene, std::uint64_t now) 
   for (auto& connection : impl_->connections) {
     if (connection->state() == SessionState::closed) continue;
     if (!impl_->served.fits(connection->join())) impl_->drop(*connection, SessionEvent::close, LeaveReason::limits);
-    else if (connection->is_proven()) connection->begin_epoch(impl_->served, draw(impl_->entropy), now);
+    else if (connection->is_validated()) connection->begin_epoch(impl_->served, draw(impl_->entropy), now);
     else connection->outdate();
   }
   return {};
@@ -114,15 +114,15 @@ Result<void> SessionServer::replace_scene(SharedScene scene, std::uint64_t now) 
   return out_of_memory();
 }
 
-/// The session of this address, or else one that is gone and whose leaves still go there.
+/// The session of this address, or else one that is closed and whose leaves still go there.
 ServerConnection* SessionServer::Impl::find(std::uint64_t peer) noexcept {
-  ServerConnection* gone = nullptr;
+  ServerConnection* closed = nullptr;
   for (std::size_t i = 0; i < peers.size(); ++i) {
     if (peers[i] != peer || connections[i]->peer() != peer) continue;
     if (connections[i]->state() != SessionState::closed) return connections[i].get();
-    if (gone == nullptr) gone = connections[i].get();
+    if (closed == nullptr) closed = connections[i].get();
   }
-  return gone;
+  return closed;
 }
 
 void SessionServer::Impl::drop(ServerConnection& connection, SessionEvent event, LeaveReason reason) noexcept {
@@ -143,26 +143,26 @@ ServerConnection* SessionServer::Impl::follow(std::uint64_t peer, std::uint64_t 
 }
 
 /// A place for the client, or why there is none.
-Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept {
+Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, const Join& message) noexcept {
   const auto refuse = [&](LeaveReason reason) {
-    reply.emplace(peer, Refusal{said.nonce, reason});
+    reply.emplace(peer, Refusal{message.nonce, reason});
     const bool is_again = !events.empty() && events.back().kind == ServerEvent::Kind::refused && events.back().reason == reason;
     if (!is_again)
       note({.kind = ServerEvent::Kind::refused, .client = options.clients, .reason = reason});  // a flood fills nothing
   };
-  if (!said.is_known) {
+  if (!message.is_known) {
     refuse(LeaveReason::version);
     return {};
   }
   const bool is_here = find(peer) != nullptr;
-  ServerConnection* place = follow(peer, said.token);
-  if (place != nullptr && place->state() != SessionState::closed && place->nonce() == said.nonce) {
+  ServerConnection* place = follow(peer, message.token);
+  if (place != nullptr && place->state() != SessionState::closed && place->nonce() == message.nonce) {
     if (!is_here) note({.kind = ServerEvent::Kind::moved, .client = place->client()});
     reply.emplace(peer, place->welcome());
     return {};
   }
   if (place != nullptr) drop(*place, SessionEvent::left, LeaveReason::bye);  // the client has begun anew
-  if (!served.fits(said)) {
+  if (!served.fits(message)) {
     refuse(LeaveReason::limits);
     return {};
   }
@@ -174,7 +174,7 @@ Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, co
     }
     place = free->get();
   }
-  place->open(peer, said, served, draw(entropy), now);
+  place->open(peer, message, served, draw(entropy), now);
   peers[place->client()] = peer;
   reply.emplace(peer, place->welcome());
   note({.kind = ServerEvent::Kind::joined, .client = place->client()});
@@ -196,8 +196,8 @@ Result<void> SessionServer::handle_datagram(std::uint64_t now, std::uint64_t pee
     return handled;
   }
   if (!is_before_epochs(datagram) || !is_of_epoch(datagram, 0, Direction::up)) return fail(Errc::checksum, "R-SES-1");
-  TACTUS_TRY(const Datagram said, read_datagram(datagram, Direction::up));
-  const Join* const join = std::get_if<Join>(&said);
+  TACTUS_TRY(const Datagram message, read_datagram(datagram, Direction::up));
+  const Join* const join = std::get_if<Join>(&message);
   if (join == nullptr) return fail(Errc::invalid, "R-SES-2");
   return in.join(now, peer, *join);
 }
@@ -239,10 +239,10 @@ Result<void> SessionServer::submit(std::uint64_t now, std::int64_t tick, const T
   std::size_t hashes = objects > kMostHashed ? 0 : std::max(kHashedObjects, objects);
   for (auto& connection : impl_->connections) {
     if (!is_live(connection)) continue;
-    const double before = connection->widening();
+    const double before = connection->bound_scale();
     if (const auto done = connection->submit(now, tick, truth, hashes); !done && first) first = done;
-    if (connection->widening() != before)
-      impl_->note({.kind = ServerEvent::Kind::widened, .client = connection->client(), .widening = connection->widening()});
+    if (connection->bound_scale() != before)
+      impl_->note({.kind = ServerEvent::Kind::bounds_scaled, .client = connection->client(), .bound_scale = connection->bound_scale()});
   }
   return first;
 }
@@ -262,8 +262,8 @@ void SessionServer::close() noexcept {
 std::optional<SessionServer::Transmit> SessionServer::poll_datagram(std::uint64_t now) noexcept {
   Impl& in = *impl_;
   if (in.reply) {
-    const auto [peer, said] = *std::exchange(in.reply, std::nullopt);
-    return Transmit{peer, in.writer.write(said)};
+    const auto [peer, message] = *std::exchange(in.reply, std::nullopt);
+    return Transmit{peer, in.writer.write(message)};
   }
   for (; in.cursor < in.connections.size(); ++in.cursor) {
     ServerConnection& connection = *in.connections[(in.first + in.cursor) % in.connections.size()];

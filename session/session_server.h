@@ -34,8 +34,8 @@ struct ClientStatus {
   std::uint64_t heard = 0;                 ///< [us] when its newest datagram came
   std::optional<RoundTrip> round_trip;
   double loss = 0;      ///< fraction of the last 256 datagrams to the client
-  double widening = 1;  ///< factor of the bounds now
-  Widening widened;     ///< since it joined
+  double bound_scale = 1;  ///< factor of the bounds now
+  BoundScaling bound_scaling;  ///< since it joined
   Traffic traffic;
 };
 
@@ -45,16 +45,16 @@ struct ServerEvent {
     live,     ///< holds it
     left,     ///< for `reason`
     moved,    ///< its address is another one: ClientStatus::peer
-    widened,  ///< its bounds are multiplied by `widening` from now on
+    bounds_scaled,  ///< its bounds are multiplied by `bound_scale` from now on
     refused,  ///< joins, for `reason`; `client` is nobody
   };
   Kind kind = Kind::joined;
   std::uint16_t client = 0;
   LeaveReason reason = LeaveReason::bye;
-  double widening = 1;
+  double bound_scale = 1;
 };
 
-/// Threads: one at a time. No call on the way of a datagram allocates but those that bring a client live; none throws.
+/// Threads: one at a time. No call that handles a datagram allocates but those that bring a client live; none throws.
 /// More clients than a thread can serve: several servers of the same scene and options, each on a thread of its own with its part of the
 /// addresses, that submit the same truth. What a client is sent depends on no other client once each server has one, so nothing is locked:
 /// each tick begins when the world has made the truth, and the world waits until all servers have submitted it. Each needs its own entropy.
@@ -114,8 +114,8 @@ class SessionServer {
   };
   /// With SessionServerOptions::works_elsewhere, after each call as poll_datagram(); nothing: nothing is to be done.   time O(clients)
   std::optional<Work> poll_work() noexcept;
-  /// The client goes live; from the next tick on it gets packets, as if it had said so now. All that was polled comes back, in any order.
-  /// out  it, if it holds what is to be freed, as the client has gone: destroy it where that may take its time
+  /// The client goes live; from the next tick on it gets packets, as if it had reported so now. All that was polled comes back, in any order.
+  /// out  it, if it holds what is to be freed, as the client has left: destroy it where that may take its time
   /// err  limit_exceeded R-API-11 memory: it is polled again once the client asks again
   Result<std::optional<Work>> take(std::uint64_t now, Work work) noexcept;
 
@@ -127,7 +127,7 @@ class SessionServer {
   std::optional<DeviceSample> device(std::uint16_t client, std::uint64_t now) noexcept;
   /// Hash of the state of its device scene.   pre  a live participant
   std::uint64_t device_hash(std::uint16_t client) const noexcept;
-  bool has_peer(std::uint64_t peer) const noexcept;  ///< there is something to be said to it yet.   time O(clients)
+  bool has_peer(std::uint64_t peer) const noexcept;  ///< there is something to be sent to it yet.   time O(clients)
   std::uint16_t clients() const noexcept;            ///< most of them; client < clients()
   ClientStatus status(std::uint16_t client) const noexcept;
   /// Hash of a substream's state as the client has it when it has got all packets.   pre  live

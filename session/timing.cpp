@@ -11,7 +11,7 @@ namespace tactus {
 namespace {
 
 constexpr std::uint64_t kShortest = 3;        // datagrams in a burst
-constexpr std::uint64_t kStillMay = 100'000;  // [us]: what was overtaken by one that came so long ago comes no more
+constexpr std::uint64_t kStillMay = 100'000;  // [us]: what is reordered comes at most so long after a newer one
 
 }  // namespace
 
@@ -75,12 +75,12 @@ constexpr std::int64_t kLongestBurst = 150'000;                // [us]
 constexpr std::uint64_t kAdaptEvery = 100'000;                 // [us]
 constexpr std::int64_t kShrink = 100;                          // [us] in this time: 1 ms per second
 constexpr std::int64_t kLong = 150'000;                        // [us]: what is above goes sooner
-constexpr std::uint64_t kUndecided = 1'000'000;  // [us] in which a change is found to be one of the way or of a clock
+constexpr std::uint64_t kUndecided = 1'000'000;  // [us] in which a change is found to be one of the link or of a clock
 constexpr std::int64_t kAnswer = 10'000, kMargin = 10'000, kApart = 10'000;  // [us] of an acknowledgement; beyond; between copies
 constexpr std::uint32_t kLossy = 65536 / 333, kLossier = 65536 / 20, kLossiest = 65536 * 3 / 20;  // fractions x 2^-16
 constexpr std::int64_t kLeastJitter = 20'000;                                                     // [us]
 constexpr std::int64_t kMostJitter = 50'000;  // [us] of round trips: what is above is a standstill or a queue
-constexpr std::uint64_t kOvertaken = 5'000;   // [us] that a packet waits for one that is not lost but late
+constexpr std::uint64_t kReordering = 5'000;   // [us] that a packet waits for one that is not lost but late
 constexpr std::uint64_t kSettle = 20'000;     // [us] in which an end that woke up takes what has waited
 
 constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }
@@ -98,7 +98,7 @@ void PlayoutClock::heard(std::uint64_t number, std::optional<std::int64_t> tick,
   if (at - heard_at_ >= reach_) follows_ = false;
   heard_at_ = at;
   if (tick) know(time_of(*tick), at - time_of(*tick)), learn(at - time_of(*tick), now);
-  else if (follows_ && number > newest_ && !waits_) news_ = std::max(news_, at - lead_);  // as new as its way lets it be
+  else if (follows_ && number > newest_ && !waits_) news_ = std::max(news_, at - lead_);  // as new as its delay lets it be
   newest_ = std::max(newest_, number);
   if (tick) add(at - time_of(*tick), now);
   if (first || (tick && now >= adapted_at_ + kAdaptEvery && is_settled(now))) adapt(now);
@@ -140,7 +140,7 @@ void PlayoutClock::held(std::int64_t tick, std::uint64_t at, std::uint64_t now) 
   if (first || (now >= adapted_at_ + kAdaptEvery && is_settled(now))) adapt(now);
 }
 
-/// [us] from the sending of what is lost to the arrival of its copy, less one way.
+/// [us] from the sending of what is lost to the arrival of its copy, less the one-way delay.
 std::int64_t PlayoutClock::answer() const noexcept {
   if (!repair_) return 0;
   const std::int64_t seen = 2 * (repair_->smoothed - repair_->least) + kLeastJitter;  // the variation begins far too high
@@ -151,7 +151,7 @@ std::int64_t PlayoutClock::answer() const noexcept {
 void PlayoutClock::waits(std::optional<std::uint64_t> since, std::uint64_t now) noexcept {
   waits_ = since.has_value();
   if (!waits_ || options_.fixed) return;
-  if (now > *since + std::max<std::uint64_t>(kOvertaken, static_cast<std::uint64_t>(late_ - least_)))
+  if (now > *since + std::max<std::uint64_t>(kReordering, static_cast<std::uint64_t>(late_ - least_)))
     delay_ = std::max(delay_, least_ + answer() + kApart);
 }
 
@@ -206,7 +206,7 @@ void PlayoutClock::add(std::int64_t lead, std::uint64_t now) noexcept {
   count_ = std::min(count_ + 1, kRemembered);
 }
 
-/// A way that changes its length changes that of round trips. If these are as before while every lead is later than any usual one, or
+/// A link whose delay changes has other round trips. If these are as before while every lead is later than any usual one, or
 /// one far earlier, a clock or the other end's ticks stood still: these leads are the first of a new time.
 /// out  false: there is a change, and not known yet of what
 bool PlayoutClock::is_settled(std::uint64_t now) noexcept {

@@ -18,18 +18,18 @@ namespace tactus {
 
 // ==== clock offset ====
 
-inline constexpr std::uint64_t kDelayWindow = 10'000'000;  ///< [us] in which the least delay of a way is looked for
-/// [us] What no way gets shorter or longer by from one datagram to the next unless a clock was stopped: a machine slept, a program stood.
+inline constexpr std::uint64_t kDelayWindow = 10'000'000;  ///< [us] in which the least delay of a direction is looked for
+/// [us] What no delay gets shorter or longer by from one datagram to the next unless a clock was stopped: a machine slept, a program stood.
 inline constexpr std::int64_t kClockStep = 30'000;
 
-/// The other end's clock less our own [us], from the fastest way there and the fastest way back of the last 10 s: these count as equally
+/// The other end's clock less our own [us], from the shortest delay there and the shortest delay back of the last 10 s: these count as equally
 /// long. spec/70-session.md section 7. Internal to the library.
 class ClockOffset {
  public:
   /// in   time  [us] of the other end, when it sent what came at `now` [us];  round_trip  [us], without what the other end waited
   void add(std::uint64_t time, std::int64_t round_trip, std::uint64_t now) noexcept {
     const auto back = static_cast<std::int64_t>(now) - static_cast<std::int64_t>(time), there = round_trip - back;
-    const auto faster = [](const WindowedMinimum& way, std::int64_t sample) { return sample < *way.value() - kClockStep; };
+    const auto faster = [](const WindowedMinimum& least, std::int64_t sample) { return sample < *least.value() - kClockStep; };
     const bool as_before = there_.value() && round_trip <= *there_.value() + *back_.value() + kClockStep / 3;
     if (as_before && (faster(there_, there) || faster(back_, back))) back_ = there_ = WindowedMinimum(kDelayWindow);
     back_.add(back, now);
@@ -84,19 +84,19 @@ class PlayoutClock {
   void heard(std::uint64_t number, std::optional<std::int64_t> tick, std::uint64_t now) noexcept;
   /// With the datagram that was heard the other end signalled the time of its ticks [us].   time as heard()
   void clock_signalled(std::int64_t time, std::uint64_t now) noexcept;
-  /// A copy of what was lost came, and up to this tick nothing is missing: that says nothing about the way.   time O(1)
+  /// A copy of what was lost came, and up to this tick nothing is missing: that says nothing about the delay.   time O(1)
   void repaired(std::int64_t tick) noexcept;
   /// A packet of this tick came at `at` [us] and could not be decoded until now.   time as heard()
   void held(std::int64_t tick, std::uint64_t at, std::uint64_t now) noexcept;
-  /// What is lost goes again, over a way as measured. Nothing: it does not.
-  void set_repair(const std::optional<RoundTrip>& way) noexcept { repair_ = way; }
+  /// What is lost goes again, over a link as measured. Nothing: it does not.
+  void set_repair(const std::optional<RoundTrip>& round_trip) noexcept { repair_ = round_trip; }
   /// Since when packets wait for one that is missing [us]; nothing: none do. While they do, nothing is news but what is decoded.
   void waits(std::optional<std::uint64_t> since, std::uint64_t now) noexcept;
   /// A packet of an older tick came as well.   time O(1)
   void late(std::int64_t tick, std::uint64_t now) noexcept;
-  /// A round trip was measured [us]: it distinguishes a longer way from a clock that stood still.   time O(1)
+  /// A round trip was measured [us]: it distinguishes a longer delay from a clock that stood still.   time O(1)
   void measured(std::int64_t round_trip, std::uint64_t now) noexcept;
-  /// Nobody asked this end for long: what comes now has waited here, and says nothing about the way.   time O(1)
+  /// Nobody asked this end for long: what comes now has waited here, and says nothing about the delay.   time O(1)
   void wake(std::uint64_t now) noexcept;
   /// The tick to show; it never falls unless the other end's ticks begin anew, nor below that of the first packet. -1: nothing was
   /// heard.
@@ -220,7 +220,7 @@ class DevicePace {
   std::int64_t period_, margin_;  // [ticks]
   std::optional<std::int64_t> offset_;
   std::int64_t tick_ = 0;       // of the last step
-  std::int64_t least_ = kNone;  // [ticks] until a packet acts that came since the last change; 0 or less: too late
+  std::int64_t least_ = kNone;  // [ticks] until a packet takes effect that came since the last change; 0 or less: too late
   std::int64_t until_ = 0;      // before this tick the pace does not get faster
   std::array<Sent, 8> sent_{};  // a ring
   std::size_t next_ = 0, waiting_ = 0;

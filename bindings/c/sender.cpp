@@ -157,13 +157,13 @@ tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t answer, doub
   });
 }
 
-tactus_status tactus_sender_look_from(tactus_sender* sender, const double* places, size_t count, tactus_error* error) {
+tactus_status tactus_sender_set_viewpoints(tactus_sender* sender, const double* places, size_t count, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     if (sender == nullptr || (places == nullptr && count > 0)) return refuse();
     std::array<Vec3, 2> out;
     const std::size_t used = std::min(count, out.size());
     for (std::size_t i = 0; i < used; ++i) out[i] = {places[3 * i], places[3 * i + 1], places[3 * i + 2]};
-    sender->sender.look_from(std::span(out).first(used));
+    sender->sender.set_viewpoints(std::span(out).first(used));
     return TACTUS_OK;
   });
 }

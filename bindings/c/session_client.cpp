@@ -91,7 +91,7 @@ tactus_session_status status_of(const SessionStatus& status) noexcept {
   out.server_start = status.start;
   out.playout_delay = status.playout_delay;
   out.loss = status.loss;
-  out.widening = out.widest = 1;
+  out.bound_scale = out.largest_bound_scale = 1;
   out.seat = status.seat;
   out.token = status.token;
   out.world = status.world;
@@ -178,10 +178,10 @@ tactus_status tactus_client_submit(tactus_client* client, uint64_t now, const ta
   });
 }
 
-tactus_status tactus_client_look_from(tactus_client* client, uint64_t now, const double* place, tactus_error* error) {
+tactus_status tactus_client_set_viewpoint(tactus_client* client, uint64_t now, const double* place, tactus_error* error) {
   return call_at(client, now, error, [&](SessionClient& session) -> Outcome {
     if (place == nullptr) return refuse();
-    session.look_from({place[0], place[1], place[2]});
+    session.set_viewpoint({place[0], place[1], place[2]});
     return TACTUS_OK;
   });
 }
@@ -206,7 +206,7 @@ tactus_status tactus_client_poll_event(tactus_client* client, tactus_event* even
                    .kind = kind_of(happened->kind),
                    .client = 0,
                    .reason = static_cast<std::uint32_t>(happened->reason),
-                   .widening = 1});
+                   .bound_scale = 1});
     return TACTUS_OK;
   });
 }

@@ -24,7 +24,7 @@ tactus_server_options server_options() noexcept {
           .reserved = 0,
           .rate = defaults.rate,
           .silence = defaults.silence,
-          .widening = defaults.widening,
+          .max_bound_scale = defaults.max_bound_scale,
           .sender = nullptr,
           .world = 0};
 }
@@ -36,7 +36,7 @@ Result<SessionServerOptions> session_options(const tactus_server_options* option
                            .clients = static_cast<std::uint16_t>(o.clients),
                            .rate = o.rate,
                            .headers = o.headers,
-                           .widening = o.widening,
+                           .max_bound_scale = o.max_bound_scale,
                            .silence = o.silence,
                            .world = o.world};
   TACTUS_TRY(out.sender, options_of(o.sender));
@@ -55,10 +55,10 @@ std::uint32_t kind_of(ServerEvent::Kind kind) noexcept {
       return TACTUS_EVENT_MOVED;
     case ServerEvent::Kind::refused:
       return TACTUS_EVENT_REFUSED;
-    case ServerEvent::Kind::widened:
+    case ServerEvent::Kind::bounds_scaled:
       break;
   }
-  return TACTUS_EVENT_WIDENED;
+  return TACTUS_EVENT_BOUNDS_SCALED;
 }
 
 /// A session of this server at a time.
@@ -82,9 +82,9 @@ tactus_session_status status_of(const ClientStatus& status) noexcept {
   out.wanted_seat = status.wanted_seat;
   out.peer = status.peer;
   out.loss = status.loss;
-  out.widening = status.widening;
-  out.widest = status.widened.widest;
-  out.widened_time = status.widened.time;
+  out.bound_scale = status.bound_scale;
+  out.largest_bound_scale = status.bound_scaling.largest;
+  out.bounds_scaled_time = status.bound_scaling.time;
   add(status.round_trip, out);
   add(status.traffic, out);
   return out;
@@ -224,7 +224,7 @@ tactus_status tactus_server_poll_event(tactus_server* server, tactus_event* even
                    .kind = kind_of(happened->kind),
                    .client = happened->client,
                    .reason = static_cast<std::uint32_t>(happened->reason),
-                   .widening = happened->widening});
+                   .bound_scale = happened->bound_scale});
     return TACTUS_OK;
   });
 }

@@ -51,7 +51,7 @@ TACTUS_SIZED(tactus_elastic_physics, TACTUS_UP_TO(tactus_elastic_physics, fricti
              TACTUS_UP_TO(tactus_elastic_physics, sub_steps));
 TACTUS_SIZED(tactus_sender_options, TACTUS_UP_TO(tactus_sender_options, load));
 TACTUS_SIZED(tactus_truth, TACTUS_UP_TO(tactus_truth, load_count), TACTUS_UP_TO(tactus_truth, moved_count));
-TACTUS_SIZED(tactus_event, TACTUS_UP_TO(tactus_event, widening));
+TACTUS_SIZED(tactus_event, TACTUS_UP_TO(tactus_event, bound_scale));
 TACTUS_SIZED(tactus_session_status, TACTUS_UP_TO(tactus_session_status, wrong_states),
              TACTUS_UP_TO(tactus_session_status, world));
 TACTUS_SIZED(tactus_server_options, TACTUS_UP_TO(tactus_server_options, sender), TACTUS_UP_TO(tactus_server_options, world));

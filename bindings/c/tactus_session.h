@@ -40,7 +40,7 @@ enum {
   TACTUS_EVENT_JOINED = 1,   /* server: a client joined and gets the declaration */
   TACTUS_EVENT_LIVE = 2,     /* the declaration is there; client: the receiver has a new scene */
   TACTUS_EVENT_CLOSED = 3,   /* over, for `reason` */
-  TACTUS_EVENT_WIDENED = 4,  /* server: the bounds of the client are multiplied by `widening` from now on */
+  TACTUS_EVENT_BOUNDS_SCALED = 4,  /* server: the bounds of the client are multiplied by `bound_scale` from now on */
   TACTUS_EVENT_MOVED = 5,    /* server: a client has another address, its `peer` */
   TACTUS_EVENT_REFUSED = 6   /* server: a join was refused, for `reason`; `client` is nobody */
 };
@@ -50,7 +50,7 @@ typedef struct tactus_event {
   uint32_t kind;   /* TACTUS_EVENT_... */
   uint32_t client; /* server */
   uint32_t reason; /* TACTUS_LEAVE_... */
-  double widening;
+  double bound_scale;
 } tactus_event;
 
 /* How a session does: at the client, or of one client at the server. */
@@ -67,8 +67,8 @@ typedef struct tactus_session_status {
   uint64_t server_start;                                           /* client: us, the server's clock at tick 0 */
   int64_t playout_delay;                                           /* client: us behind the fastest packet */
   double loss;                                                     /* fraction of the last 256 datagrams to the other end */
-  double widening, widest;                                         /* server: factor of the bounds, now and at most */
-  uint64_t widened_time;                                           /* server: us */
+  double bound_scale, largest_bound_scale;                         /* server: factor of the bounds, now and at most */
+  uint64_t bounds_scaled_time;                                     /* server: us in which it was above 1 */
   uint64_t datagrams_sent, bytes_sent, packets_sent, payload_sent; /* payload: bytes of packets */
   uint64_t datagrams_heard, bytes_heard, packets_heard, payload_heard;
   uint64_t packets_refused, packets_held, lost, ticks_held, wrong_states;
@@ -94,8 +94,8 @@ typedef struct tactus_server_options {
   uint32_t headers; /* bytes around a datagram; 28: UDP and IPv4 */
   uint32_t reserved;
   uint64_t rate;                       /* bit/s to each client; 0: no limit */
-  uint64_t silence;                    /* us after which a client counts as gone; 120 s */
-  double widening;                     /* factor by which bounds widen at most where the network is too slow, 1 to 64; 8 */
+  uint64_t silence;                    /* us of silence after which a client's session is closed; 120 s */
+  double max_bound_scale;              /* factor by which bounds are scaled at most where the network is too slow, 1 to 64; 8 */
   const tactus_sender_options* sender; /* for every client; NULL: defaults */
   uint64_t world;                      /* what is simulated, for programs of clients to compare; 0: not declared */
 } tactus_server_options;
@@ -148,7 +148,7 @@ typedef struct tactus_client_options {
   double device_rotation;      /* rad; 0.02 */
   double device_weber;         /* 0.04: in contact */
   int64_t playout;             /* us behind the fastest packet; -1: adaptive */
-  uint64_t silence;            /* us after which the server counts as gone; 120 s */
+  uint64_t silence;            /* us of silence after which the session is closed; 120 s */
   const tactus_limits* limits; /* NULL: defaults */
   uint64_t token;              /* of a session that ended without the server's knowledge; 0: none */
   uint32_t seat;               /* that a participant wants, from 1; 0: any */
@@ -169,8 +169,8 @@ TACTUS_API tactus_status tactus_client_handle_timeout(tactus_client* client, uin
 TACTUS_API tactus_status tactus_client_submit(tactus_client* client, uint64_t now, const tactus_device_sample* sample,
                                               const tactus_device_contact* contact, tactus_error* error);
 /* In a scene with interest: where the user looks from, x y z [m, world], apart from the device; before _open, too, as an observer is sent
-   all until it has said so. tactus_receiver_levels shows what comes of it. What is not finite, or beyond 8000 km, does not count. */
-TACTUS_API tactus_status tactus_client_look_from(tactus_client* client, uint64_t now, const double* place, tactus_error* error);
+   all until it has reported it. tactus_receiver_levels shows what comes of it. What is not finite, or beyond 8000 km, does not count. */
+TACTUS_API tactus_status tactus_client_set_viewpoint(tactus_client* client, uint64_t now, const double* place, tactus_error* error);
 /* in   capacity  at least TACTUS_DATAGRAM_BYTES */
 TACTUS_API tactus_status tactus_client_poll_datagram(tactus_client* client, uint64_t now, uint8_t* bytes, size_t capacity,
                                                      size_t* size, tactus_error* error);

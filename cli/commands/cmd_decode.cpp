@@ -158,7 +158,7 @@ Outcome run(const DecodeOptions& options) {
   if (player->scene().loads) report.loads.emplace();
   report.timings = {{"decode"}};
   report.stream = {player->header_bytes(), bytes.size()};
-  if (report.traffic) report.client = way_of_client(options.replica.interpolation, player->scene().is_smoothed);
+  if (report.traffic) report.client = display_of_client(options.replica.interpolation, player->scene().is_smoothed);
   std::optional<MotionFigure> figure;
   if (!options.plot.empty()) figure.emplace(info);
   TACTUS_CHECK(decode_all(*player, *writer, info, options, report, figure ? &*figure : nullptr));

@@ -89,7 +89,7 @@ Outcome take_part(const JoinOptions& options, SessionClient& session, Visit& vis
       TACTUS_CHECK(visit.step(now));
       ++live_ticks;
     }
-    visit.say(now);
+    visit.send(now);
     if (meter.is_due(now)) meter.draw(now, visit.meter_text(now, visit.pace(ticker).missed));
   }
   return {};

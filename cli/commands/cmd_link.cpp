@@ -137,7 +137,7 @@ void Forwarder::note_late(Microseconds due) {
 Json direction_json(const sim::LinkCounters& c) {
   return {{"sent", c.sent},          {"arrived", c.arrived},       {"lost", c.lost},
           {"in_outages", c.cut},     {"overflowed", c.overflowed}, {"duplicated", c.duplicated},
-          {"overtaken", c.overtaken}};
+          {"reordered", c.reordered}};
 }
 
 Value value_of(const ForwardOptions& options, const Forwarder& forwarder, double seconds) {

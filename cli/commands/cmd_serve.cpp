@@ -103,7 +103,7 @@ Json to_json(const ServeOptions& options, const SessionServer& sessions, const t
                 {"state", name_of(status.state)},
                 {"role", status.role == Role::observer ? "observer" : "participant"},
                 {"loss", status.loss},
-                {"bounds_widened", widening_value(status.widened)},
+                {"bound_scale", bound_scaling_value(status.bound_scaling)},
                 {"traffic", traffic_value(status.traffic, seconds, seal)}};
     if (const std::string user = service.user_of(i); !user.empty()) client["key"] = user;
     if (status.round_trip) client["round_trip"] = round_trip_value(*status.round_trip);
@@ -279,7 +279,7 @@ Outcome serve(const ServeOptions& options, const sim::Server& world, SessionServ
       TACTUS_CHECK(service.step(now, ticker.tick(), trace, options.output));
       strain.look(now, ticker, socket);
     }
-    service.say(now);
+    service.send(now);
     if (woken == Ticker::Woken::by_tick) watch.tick(begun, ticker, service, socket);
     if (meter.is_due(now)) meter.draw(now, meter_text(world, sessions, service, ticker));
   }
@@ -315,7 +315,7 @@ Outcome run(const ServeOptions& typed) {
                                       .rate = static_cast<std::uint64_t>(options.rate),
                                       .headers = static_cast<std::uint32_t>(header_bytes(listen) + seal),
                                       .world = sim::fingerprint(world->scene()),
-                                      .addresses_are_proven = wire->seal().has_value(),
+                                      .addresses_are_validated = wire->seal().has_value(),
                                       .works_elsewhere = !options.check};
   TACTUS_TRY(const auto observation, make_observation(options, *world));
   Watch watch;

@@ -46,9 +46,9 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   add_meshes(info, options.meshes, options.triggers, report);
   for (MeshReport& mesh : report.meshes) mesh.guaranteed = options.meshes.is_main();
   const bool is_smoothed = report.moving > 0 && options.meshes.coding(options.triggers).rigid == RigidProfile::main;
-  report.client = way_of_client(options.replica.interpolation, is_smoothed);
+  report.client = display_of_client(options.replica.interpolation, is_smoothed);
   // A client that smooths what it shows leaves the bounds that the encoder keeps.
-  if (report.client != ClientWay::interpolated)
+  if (report.client != ClientDisplay::interpolated)
     report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";
   return report;
 }

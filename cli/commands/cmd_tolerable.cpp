@@ -157,7 +157,7 @@ void setup_tolerable(Command& app, Action& action) {
       "A client learns of an object's motion a round trip late. Meanwhile a hand that presses goes further into what the client\n"
       "shows, and feels more than at the server (thesis eqs. 4.17 to 4.20, 4.31). What is deformable follows only a fraction of "
       "the\n"
-      "device's way, and tolerates as much more; a recording does not tell which fraction (eq. 4.54).\n"
+      "device's displacement, and tolerates as much more; a recording does not tell which fraction (eq. 4.54).\n"
       "Examples:\n  tactus sim push-1dof -o push.mcap && tactus tolerable push.mcap\n  tactus tolerable membrane");
   on_chosen<TolerableOptions>(command, action, options, run);
 }

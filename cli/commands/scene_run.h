@@ -41,7 +41,7 @@ class TolerableScene {
   std::int64_t ticks() const noexcept { return simulation_.ticks(); }
   /// The next tick; valid until the next call.   err  of Simulation::step
   tl::expected<const TraceFrame*, Failure> next();
-  /// K: fraction of the device's way that what a user touches follows (thesis eq. 4.54); 1 for rigid objects.
+  /// K: fraction of the device's displacement that what a user touches follows (thesis eq. 4.54); 1 for rigid objects.
   double follows(const DelayTolerance::Pair& pair, const UserSample& user) const noexcept;
 
  private:

@@ -57,7 +57,7 @@ std::pair<std::string, std::string> port_trouble(std::uint16_t port, int cause, 
       return {"this machine has no IPv6", "Give an address of IPv4, such as 0.0.0.0 for all."};
     case ENETUNREACH:
     case EHOSTUNREACH:
-      return {"no way leads there", "Check the network of this machine: `ip route`."};
+      return {"no route leads there", "Check the network of this machine: `ip route`."};
     default:
       return {std::generic_category().message(cause), "Check the address, and the network of this machine."};
   }

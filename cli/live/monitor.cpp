@@ -118,9 +118,9 @@ void add_paths(Exposition& out, const ServerFigures& figures) {
            [](const ClientStatus& c) { return c.round_trip ? static_cast<double>(c.round_trip->smoothed) / 1e6 : 0.0; });
   add_each(out, figures, "tactus_client_loss_ratio", "Fraction of the last 256 datagrams to a live client that were lost.",
            [](const ClientStatus& c) { return c.loss; });
-  add_each(out, figures, "tactus_client_widening_ratio",
+  add_each(out, figures, "tactus_client_bound_scale_ratio",
            "Factor of the error bounds of a live client now; 1: as they were asked for.",
-           [](const ClientStatus& c) { return c.widening; });
+           [](const ClientStatus& c) { return c.bound_scale; });
   add_each(out, figures, "tactus_client_seat", "User of the scene that a live client plays, from 1; 0: none.",
            [](const ClientStatus& c) { return unsigned{c.seat}; });
 }
@@ -145,7 +145,7 @@ void add_traffic(Exposition& out, const ServerFigures& figures, const ServerFact
           figures.datagrams_refused);
   out.one("tactus_receive_dropped_total", "counter", "Datagrams that the system dropped, as too many waited for this program.",
           figures.datagrams_dropped);
-  out.one("tactus_receive_limited_total", "counter", "Datagrams dropped unread, as their sender said too much.",
+  out.one("tactus_receive_limited_total", "counter", "Datagrams dropped unread, as their sender sent too much.",
           figures.datagrams_limited);
   out.one("tactus_ticks_held_total", "counter", "Ticks that were not coded for a client, as its network carried no more.",
           sum.ticks_held);

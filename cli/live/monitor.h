@@ -65,7 +65,7 @@ struct ServerFigures {
   std::array<std::uint64_t, 7> refused{};  ///< joins, by LeaveReason
   std::uint64_t datagrams_refused = 0;
   std::uint64_t datagrams_dropped = 0;  ///< by the system, as its queue was full
-  std::uint64_t datagrams_limited = 0;  ///< by this program, as their senders said too much
+  std::uint64_t datagrams_limited = 0;  ///< by this program, as their senders sent too much
   Traffic traffic{};
   std::optional<seal::Counters> seal{};
 };

@@ -53,17 +53,17 @@ tl::expected<Vec3, Failure> RenderedRecording::step(const device::ServoTick& tic
   if (begin_ < 0) return Vec3{};
   const device::Recording::Moment moment = recording_.at(tick.due - begin_);
   is_over_ = moment.is_over;
-  const Vec3 way = moment.sample.position - sample.position;
-  const double distance = norm(way);
+  const Vec3 displacement = moment.sample.position - sample.position;
+  const double distance = norm(displacement);
   sum_ += distance;
   largest_ = std::max(largest_, distance);
   ++ticks_;
-  if (exerted_ == Exerted::path) return spring(way, sample.position, moment.into, tick.due);
+  if (exerted_ == Exerted::path) return spring(displacement, sample.position, moment.into, tick.due);
   return exerted_ == Exerted::force ? moment.force : Vec3{};
 }
 
 /// It grows from nothing, also when the recording begins again and the hand is far away.
-Vec3 RenderedRecording::spring(const Vec3& way, const Vec3& hand, Time into, Time now) noexcept {
+Vec3 RenderedRecording::spring(const Vec3& displacement, const Vec3& hand, Time into, Time now) noexcept {
   if (now > placed_) {
     const Vec3 speed = (1e9 / static_cast<double>(now - placed_)) * (hand - place_);
     speed_ = speed_ + kSmoothing * (speed - speed_);
@@ -71,7 +71,7 @@ Vec3 RenderedRecording::spring(const Vec3& way, const Vec3& hand, Time into, Tim
     placed_ = now;
   }
   const double fraction = std::min(static_cast<double>(into) / static_cast<double>(kGrowth), 1.0);
-  return fraction * (stiffness_ * way - kDamping * speed_);
+  return fraction * (stiffness_ * displacement - kDamping * speed_);
 }
 
 RenderedRecording::Distance RenderedRecording::distance() const noexcept {

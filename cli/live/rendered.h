@@ -69,7 +69,7 @@ class RenderedRecording final : public Rendered {
   Distance distance() const noexcept;
 
  private:
-  Vec3 spring(const Vec3& way, const Vec3& hand, device::Time into, device::Time now) noexcept;
+  Vec3 spring(const Vec3& displacement, const Vec3& hand, device::Time into, device::Time now) noexcept;
 
   device::Recording recording_;
   Exerted exerted_;

@@ -37,12 +37,12 @@ void give_back() {
 void shake(const tactus::Scene& scene, const Truth& truth, std::int64_t tick, std::vector<RigidSample>& out) {
   out.assign(truth.objects.begin(), truth.objects.end());
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const double angle = 0.006 * static_cast<double>(tick) + static_cast<double>(i), way = 0.01 * std::sin(angle);
+    const double angle = 0.006 * static_cast<double>(tick) + static_cast<double>(i), displacement = 0.01 * std::sin(angle);
     const unsigned dof = scene.objects[i].dof;
     Vec3& position = out[i].pose.position;
-    if ((dof & 1u) != 0) position.x += way;
-    else if ((dof & 2u) != 0) position.y += way;
-    else if ((dof & 4u) != 0) position.z += way;
+    if ((dof & 1u) != 0) position.x += displacement;
+    else if ((dof & 2u) != 0) position.y += displacement;
+    else if ((dof & 4u) != 0) position.z += displacement;
   }
 }
 

@@ -41,7 +41,7 @@ void Service::hear() {
     const std::uint64_t now = microseconds_now();
     if (!sessions_.handle_datagram(now, heard->peer, heard->bytes)) ++refused_;
     wire_.settle([this](std::uint64_t peer) { return has_session(peer); });
-    say(now);
+    send(now);
   }
   while (const auto peer = wire_.poll_closed()) end(*peer);
   sessions_.handle_timeout(microseconds_now());
@@ -64,7 +64,7 @@ void Service::look_at_keys(std::uint64_t now) {
     if (reported_[i].is_removed) sessions_.close(i, LeaveReason::bye);
     else find_user(status);
   }
-  say(now);
+  send(now);
 }
 
 /// What a client may do is what the user of its address may, whoever it was before.
@@ -92,11 +92,11 @@ void Service::look_at_floods(std::uint64_t now) {
 
 void Service::close(std::uint64_t now) {
   sessions_.close();
-  say(now);
+  send(now);
   wire_.close();
 }
 
-void Service::say(std::uint64_t now) {
+void Service::send(std::uint64_t now) {
   while (const auto datagram = sessions_.poll_datagram(now)) wire_.send(datagram->peer, datagram->bytes);
   while (const auto event = sessions_.poll_event()) report(*event, now);
 }
@@ -144,7 +144,7 @@ Outcome Service::make_tick(std::uint64_t now, std::optional<TraceWriter>& trace,
   if (const auto sent = sessions_.submit(now, frame.tick, truth); !sent)
     return refuse("session", place_of_tick(frame.tick), sent.error());
   log_held(frame.tick, now);
-  say(now);
+  send(now);
   if (observation_ != nullptr) observation_->offer(frame, truth.loads);
   if (trace)
     if (const auto written = trace->write(frame); !written) return refuse(output, place_of_tick(frame.tick), written.error());
@@ -165,7 +165,7 @@ void Service::look_after_seats(std::uint64_t now) {
   for (std::uint16_t client = 0; client < sessions_.clients(); ++client) {
     const ClientStatus status = sessions_.status(client);
     if (status.state != SessionState::live) continue;
-    log_widening(status, now);
+    log_bound_scale(status, now);
     if (status.role == Role::participant && silence_of(client, now) <= kFresh) give_seat(status, now);
   }
 }
@@ -273,8 +273,8 @@ void Service::report(const ServerEvent& event, std::uint64_t now) {
           reported_[event.client].is_removed ? "its user is removed, or has another key" : cli::name_of(event.reason);
       return report(event.client, now, "left", fmt::format("is gone: {}", reason), {{"reason", reason}});
     }
-    case ServerEvent::Kind::widened:
-      reported_[event.client].widened_at = now;
+    case ServerEvent::Kind::bounds_scaled:
+      reported_[event.client].scaled_at = now;
       return;
     case ServerEvent::Kind::refused:
       return;
@@ -325,14 +325,14 @@ void Service::describe(ServerFigures& out) {
   if (const auto seal = wire_.seal()) out.seal = seal->counters;
 }
 
-void Service::log_widening(const ClientStatus& status, std::uint64_t now) {
+void Service::log_bound_scale(const ClientStatus& status, std::uint64_t now) {
   Reported& reported = reported_[status.client];
-  if (status.widening == reported.widening || now < reported.widened_at + kLasting) return;
-  reported.widening = status.widening;
-  report(status.client, now, "widened",
-       status.widening == 1 ? std::string("has the bounds that were asked for again")
-                            : fmt::format("gets bounds {:.3g} times as wide: its network does not carry more", status.widening),
-       {{"widening", status.widening}});
+  if (status.bound_scale == reported.bound_scale || now < reported.scaled_at + kLasting) return;
+  reported.bound_scale = status.bound_scale;
+  report(status.client, now, "bounds_scaled",
+       status.bound_scale == 1 ? std::string("has the bounds that were asked for again")
+                            : fmt::format("gets bounds {:.3g} times as wide: its network does not carry more", status.bound_scale),
+       {{"bound_scale", status.bound_scale}});
 }
 
 }  // namespace tactus::cli

@@ -31,7 +31,7 @@ class Service {
   void hear();
   /// The world comes to this tick. Ticks that were missed are made at once, if they are few; of many the world knows nothing.
   Outcome step(std::uint64_t now, std::int64_t tick, std::optional<TraceWriter>& trace, const std::string& output);
-  void say(std::uint64_t now);
+  void send(std::uint64_t now);
   /// Look at the file of the keys with the next tick, without waiting for the next second.
   void reload() { must_look_ = true; }
   /// Take leave of all.
@@ -52,8 +52,8 @@ class Service {
   };
   /// What was reported to the operator of a client.
   struct Reported {
-    double widening = 1;
-    std::uint64_t widened_at = 0;  // [us] since when it is another one
+    double bound_scale = 1;
+    std::uint64_t scaled_at = 0;  // [us] since when it is another one
     bool looks_on = false;
     std::optional<WireUser> user;  // nothing: there are no keys
     bool is_removed = false;       // from the keys
@@ -74,7 +74,7 @@ class Service {
   void report(const ServerEvent& event, std::uint64_t now);
   void log_refusal(LeaveReason reason, std::uint64_t now);
   void log_held(std::int64_t tick, std::uint64_t now);
-  void log_widening(const ClientStatus& status, std::uint64_t now);
+  void log_bound_scale(const ClientStatus& status, std::uint64_t now);
   void report(std::uint16_t client, std::uint64_t now, const char* event, const std::string& text, Json fields = Json::object());
   void look_at_keys(std::uint64_t now);
   void look_at_floods(std::uint64_t now);

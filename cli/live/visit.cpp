@@ -162,7 +162,7 @@ void Visit::look_at_network(std::uint64_t now) {
   wire_.renew(now);
 }
 
-/// Anyone can say that the key is wrong: the handshake goes on as if nobody had.
+/// Anyone can claim that the key is wrong: the handshake goes on as if nobody had.
 void Visit::look_at_key() {
   if (is_doubted_ == wire_.is_doubted()) return;
   is_doubted_ = wire_.is_doubted();
@@ -217,13 +217,13 @@ void Visit::look_at_seat(std::uint64_t now) {
   print(fmt::format("{} is played by another: this end looks on until the seat is free. --user NAME plays another one", user));
 }
 
-void Visit::say(std::uint64_t now) {
+void Visit::send(std::uint64_t now) {
   while (const auto datagram = session_.poll_datagram(now)) wire_.send(*datagram);
 }
 
 Outcome Visit::close(std::uint64_t now) {
   session_.close();
-  say(now);
+  send(now);
   wire_.close();
   token_.keep(0);
   if (!trace) return {};

@@ -56,7 +56,7 @@ class Visit {
   Visit(const JoinOptions& options, SessionClient& session, net::UdpSocket& socket, const net::Address& server, ClientWire& wire);
 
   Outcome hear();
-  void say(std::uint64_t now);
+  void send(std::uint64_t now);
   /// Take leave, and end what is written.
   Outcome close(std::uint64_t now);
   /// A tick of the device.   pre  live

@@ -101,7 +101,7 @@ class ServerWire {
   /// A peer that is gone, whatever its session believes.
   virtual std::optional<std::uint64_t> poll_closed() = 0;
   virtual void close() = 0;
-  virtual std::uint64_t limited() const = 0;  ///< datagrams dropped: their senders said too much
+  virtual std::uint64_t limited() const = 0;  ///< datagrams dropped: their senders sent too much
   virtual std::uint64_t limited_of(std::uint64_t peer) const = 0;
   virtual std::optional<SealUse> seal() const = 0;  ///< nothing: it is not sealed
 };

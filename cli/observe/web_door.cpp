@@ -46,7 +46,7 @@ constexpr std::uint32_t kMostHeader = 8192;                       // [bytes] of 
 constexpr std::size_t kMostHeard = 125;                           // [bytes] of a message from an observer
 constexpr int kSystemBuffer = 1 << 17;                            // [bytes] what the system may hold beside that
 constexpr std::size_t kMostWaiting = 90, kMostBytes = 16U << 20;  // messages and bytes for one observer: three seconds
-// For a request, for the page to be taken, and without a sign of life.
+// For a request, for the page to be taken, and without a keep-alive.
 constexpr auto kPatience = 5s, kPagePatience = 15s, kIdle = 20s;
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
@@ -134,12 +134,12 @@ class Observer : public std::enable_shared_from_this<Observer> {
   }
 
  private:
-  /// For signs of life and the end; an observer has nothing to say.
+  /// For keep-alives and the end; an observer has nothing to send.
   void listen() {
     stream_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
       if (error) return self->door_.leave(self.get());
       self->outbox_.clear();
-      self->close({websocket::close_code::policy_error, "an observer has nothing to say"});
+      self->close({websocket::close_code::policy_error, "an observer has nothing to send"});
     });
   }
 
@@ -150,8 +150,8 @@ class Observer : public std::enable_shared_from_this<Observer> {
       stream_.async_close(*farewell_, [self = shared_from_this()](const error_code&) { self->door_.leave(self.get()); });
       return;
     }
-    on_the_way_ = outbox_.pop();
-    stream_.async_write(asio::buffer(*on_the_way_), [self = shared_from_this()](const error_code& error, std::size_t) {
+    in_flight_ = outbox_.pop();
+    stream_.async_write(asio::buffer(*in_flight_), [self = shared_from_this()](const error_code& error, std::size_t) {
       if (error) return self->door_.leave(self.get());
       self->is_writing_ = false;
       if (!self->outbox_.is_empty() || self->farewell_) self->write();
@@ -163,7 +163,7 @@ class Observer : public std::enable_shared_from_this<Observer> {
   websocket::stream<beast::tcp_stream> stream_;
   beast::flat_buffer buffer_;
   Outbox outbox_{kMostWaiting, kMostBytes};
-  Outbox::Message on_the_way_;
+  Outbox::Message in_flight_;
   std::optional<websocket::close_reason> farewell_;
   bool is_open_ = false, has_begun_ = false, is_writing_ = false;
 };

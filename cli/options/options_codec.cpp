@@ -126,7 +126,7 @@ void TriggerArguments::check_bound(const Option& option, const PoseBound& bound)
 
 void TriggerArguments::add_encoder_to(Command& app) {
   options_.push_back(add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time,
-                                  "An object that was not sent for this long is sent again, as a sign of life; 0: never [1s]")
+                                  "An object that was not sent for this long is sent again, as a keep-alive; 0: never [1s]")
                          ->check(within(Dimension::time, "0s", "3600s")));
   options_.push_back(add_quantity(app, "--key-interval", key_interval_, Dimension::time,
                                   "Time between key packets, at which decoding can start; 0: the first only [5s]")
@@ -268,10 +268,10 @@ TraceCoding MeshArguments::coding(const TriggerArguments& triggers) const {
 }
 
 Option* add_interpolation(Command& app, ReplicaOptions& options) {
-  const std::map<std::string, Interpolation> ways{
+  const std::map<std::string, Interpolation> interpolations{
       {"linear", Interpolation::linear}, {"hermite", Interpolation::hermite}, {"blending", Interpolation::blending}};
   return app.add_flag(
-      "--interpolate", "linear", [&options, ways](const std::string& way) { options.interpolation = ways.at(way); },
+      "--interpolate", "linear", [&options, interpolations](const std::string& name) { options.interpolation = interpolations.at(name); },
       {"linear", "hermite", "blending"},
       "Smooth the replica over 75 % of the mean inter-arrival time, 5 to 100 ms. With =hermite on cubics that keep the "
       "velocity, with =blending by projective velocity blending, else linear");

@@ -162,7 +162,7 @@ Parsed<void> read_part(sim::LinkOptions& link, Text name, Text value) {
 const char* link_help() {
   return "A network is a list of parts, NAME=VALUE, separated by commas:\n"
          "  delay=20ms             of every datagram\n"
-         "  jitter=5ms             more, uniform from 0 to this; datagrams overtake each other\n"
+         "  jitter=5ms             more, uniform from 0 to this; datagrams are reordered\n"
          "  gamma=20ms/10ms/1s     more, gamma-distributed: mean/deviation/how long a value stays\n"
          "  delays=FILE            more, recorded: CSV with the columns time_s,delay_s; repeated\n"
          "  loss=1%  burst=5       fraction of datagrams lost; mean length of a row of losses\n"

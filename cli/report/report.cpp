@@ -143,7 +143,7 @@ Json direction_json(const DirectionReport& direction, double seconds) {
   return {{"packets_per_s", l.packets},      {"datagrams_per_s", l.datagrams},  {"payload_bit_per_s", l.payload},
           {"session_bit_per_s", l.session},  {"udp_ipv4_bit_per_s", l.headers}, {"all_bit_per_s", l.all()},
           {"datagrams", direction.sent},     {"lost", direction.lost},          {"duplicated", direction.duplicated},
-          {"overtaken", direction.overtaken}};
+          {"reordered", direction.reordered}};
 }
 
 Json network_json(const Report& r, const NetworkReport& user) {
@@ -157,7 +157,7 @@ Json network_json(const Report& r, const NetworkReport& user) {
            {"ticks_without_full_force", user.without_force},
            {"packets_refused", user.status.traffic.packets_refused},
            {"wrong_states", user.down.traffic.wrong_states},
-           {"bounds_widened", widening_value(user.widened)}};
+           {"bound_scale", bound_scaling_value(user.bound_scaling)}};
   if (const auto& trip = user.status.round_trip)
     out["round_trip_s"] = {
         {"smoothed", seconds_of(trip->smoothed)}, {"variation", seconds_of(trip->variation)}, {"least", seconds_of(trip->least)}};
@@ -222,8 +222,8 @@ Json check_json(const CheckReport& c) {
 void add_particulars(Json& out, const Report& r) {
   if (r.seed) out["seed"] = *r.seed;
   if (r.segments) out["segments"] = *r.segments;
-  constexpr std::array kWays{"direct", "smoothed", "interpolated"};
-  if (r.client) out["client"] = kWays[static_cast<std::size_t>(*r.client)];
+  constexpr std::array kDisplays{"direct", "smoothed", "interpolated"};
+  if (r.client) out["client"] = kDisplays[static_cast<std::size_t>(*r.client)];
   for (const DeformableReport& d : r.deformables) out["solvers"].push_back(solver_json(d));
   for (const CheckReport& check : r.checks) out["checks"].push_back(check_json(check));
   if (r.rigid) out["rigid"] = rigid_json(*r.rigid);
@@ -478,8 +478,8 @@ Value mesh_bounds_value(const DeformableThresholds& b, std::uint8_t rings, bool 
   return out;
 }
 
-Value widening_value(const Widening& widened) {
-  return Json{{"widest", widened.widest}, {"for_s", 1e-6 * static_cast<double>(widened.time)}};
+Value bound_scaling_value(const BoundScaling& scaling) {
+  return Json{{"largest", scaling.largest}, {"for_s", 1e-6 * static_cast<double>(scaling.time)}};
 }
 
 std::string error_json(const Failure& failure) {

@@ -112,7 +112,7 @@ inline TrafficLayers sent_layers(const Traffic& traffic, double seconds, std::si
 /// One direction: what an end sent, and what the network did to it.
 struct DirectionReport {
   Traffic traffic{};                                                ///< of the end that sends
-  std::uint64_t sent = 0, lost = 0, duplicated = 0, overtaken = 0;  ///< datagrams
+  std::uint64_t sent = 0, lost = 0, duplicated = 0, reordered = 0;  ///< datagrams
 };
 
 struct NetworkReport {
@@ -126,7 +126,7 @@ struct NetworkReport {
   StepTimes shapes{}, poses{},
       compensation{};  ///< what the client computed for its user, per tick; empty: there is nothing of it
   SessionStatus status{};
-  Widening widened{};  ///< of the bounds, by the server
+  BoundScaling bound_scaling{};  ///< of the bounds, by the server
   DirectionReport up{}, down{};
 };
 
@@ -198,7 +198,7 @@ struct CheckReport {
     std::optional<EnergyDifference> energy{};  ///< of an object; of a user the work of the hand
   };
   std::string against;              ///< "half the step"
-  std::vector<Quantity> objects{};  ///< [m] position, of the way from its first one
+  std::vector<Quantity> objects{};  ///< [m] position, of the displacement from its first one
   std::vector<double> turns{};      ///< [rad] largest difference in rotation, one per object
   std::vector<Quantity> users{};    ///< [N] rendered force
   std::vector<Quantity> meshes{};   ///< [m] vertex farthest off, of the largest displacement
@@ -206,11 +206,11 @@ struct CheckReport {
 };
 
 /// How a client passes over to updates.
-enum class ClientWay : std::uint8_t { direct, smoothed, interpolated };
+enum class ClientDisplay : std::uint8_t { direct, smoothed, interpolated };
 
-constexpr ClientWay way_of_client(Interpolation interpolation, bool is_smoothed) {
-  if (interpolation != Interpolation::none) return ClientWay::interpolated;
-  return is_smoothed ? ClientWay::smoothed : ClientWay::direct;
+constexpr ClientDisplay display_of_client(Interpolation interpolation, bool is_smoothed) {
+  if (interpolation != Interpolation::none) return ClientDisplay::interpolated;
+  return is_smoothed ? ClientDisplay::smoothed : ClientDisplay::direct;
 }
 
 struct Report {
@@ -221,7 +221,7 @@ struct Report {
   std::uint64_t moving = 0;                                  ///< objects that can move
   std::size_t objects = 0, users = 0;
   std::optional<std::uint64_t> seed{}, segments{};
-  std::optional<ClientWay> client{};
+  std::optional<ClientDisplay> client{};
   std::vector<DeformableReport> deformables{};
   std::optional<RigidReport> rigid{};
   std::vector<CheckReport> checks{};
@@ -280,7 +280,7 @@ Value stream_value(const Report& report);  ///< pre  it has a stream
 Value bounds_value(const RigidTriggers& bounds);
 /// in   guaranteed  false: the bounds only decide what is sent
 Value mesh_bounds_value(const DeformableThresholds& bounds, std::uint8_t rings, bool guaranteed);
-Value widening_value(const Widening& widened);
+Value bound_scaling_value(const BoundScaling& scaling);
 
 /// {"error": ...}, schema error.json
 std::string error_json(const Failure& failure);

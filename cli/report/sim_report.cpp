@@ -263,13 +263,13 @@ std::vector<NetworkReport> NetworkJudge::finish(const sim::SessionNetwork& netwo
                            .sent = link.sent,
                            .lost = link.lost + link.cut + link.overflowed,
                            .duplicated = link.duplicated,
-                           .overtaken = link.overtaken};
+                           .reordered = link.reordered};
   };
   std::vector<NetworkReport> out;
   for (std::size_t i = 0; i < users_.size(); ++i) {
     NetworkReport& report = out.emplace_back(std::move(users_[i].report));
     report.status = network.status(i);
-    report.widened = network.widened(i);
+    report.bound_scaling = network.bound_scaling(i);
     report.up = direction(network.sent_by(i), network.uplink(i));
     report.down = direction(network.sent_to(i), network.downlink(i));
     for (std::size_t m = 0; m < users_[i].shapes.size(); ++m)

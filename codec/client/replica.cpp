@@ -168,7 +168,7 @@ void Replica::apply(const DecodedPacket& packet, const RigidStates& states, std:
   if (interpolation_ == Interpolation::playout) return add_to_timelines(packet, states);
   for (const RigidUpdate& update : packet.updates) {
     Track& track = tracks_[update.object];
-    if (packet.number < track.number) continue;  // overtaken by a newer update of this object
+    if (packet.number < track.number) continue;  // reordered: there is a newer update of this object
     track.number = packet.number;
     const std::int64_t now = std::max({arrival, packet.tick, track.last_arrival});
     const RigidPose shown = pose(update.object, now);

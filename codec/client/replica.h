@@ -83,7 +83,7 @@ class HeardPackets {
 };
 
 // ==== bend ====
-// The way of an object between two updates when a packet between them is missing. spec/60-client.md section 7.
+// The path of an object between two updates when a packet between them is missing. spec/60-client.md section 7.
 
 /// A cubic that leaves `a` and meets `b` with their velocities; a straight line where these are 0.
 /// Its error grows with the fourth power of the time between, that of dead reckoning with the second.

@@ -26,7 +26,7 @@ void StiffnessReduction::move(const Vec3& device) noexcept {
 }
 
 /// [m] Of the device in the last round trip, as far as its path is known.
-Vec3 StiffnessReduction::way(std::uint32_t round_trip) const noexcept {
+Vec3 StiffnessReduction::displacement(std::uint32_t round_trip) const noexcept {
   if (known_ == 0) return {};
   const std::size_t back = std::min<std::size_t>(round_trip, known_ - 1);
   const auto place = [this](std::size_t ago) -> const Vec3& { return path_[(next_ + path_.size() - 1 - ago) % path_.size()]; };
@@ -41,7 +41,7 @@ double StiffnessReduction::filtered(double wanted) noexcept {
 
 double StiffnessReduction::reduced(const DeformableTouch& touch, std::uint32_t round_trip) noexcept {
   const double k = touch.coupling, follows = followed_fraction(touch.object_stiffness, k);
-  const double stretch = -dot(touch.stretch, touch.normal), inwards = -dot(way(round_trip), touch.normal);
+  const double stretch = -dot(touch.stretch, touch.normal), inwards = -dot(displacement(round_trip), touch.normal);
   double wanted = k;
   if (inwards > 0) wanted = inwards < stretch ? k * (1 - follows * inwards / stretch) : k * (1 - follows);
   return filtered(wanted);
@@ -60,7 +60,7 @@ double StiffnessReduction::reduced(const RigidTouch& touch, std::uint32_t round_
   const Vec3 push = (1 / stretch) * touch.stretch;
   const double resists = touch.moves ? -dot(touch.external, push) : norm(touch.hold);
   const double due = std::max(0.0, resists - dot(touch.others, push));
-  const double behind = blending(touch.hold, touch.normal) * std::min(dot(way(round_trip), push), stretch - due / k);
+  const double behind = blending(touch.hold, touch.normal) * std::min(dot(displacement(round_trip), push), stretch - due / k);
   return filtered(behind > 0 ? k * due / (due + k * behind) : k);
 }
 

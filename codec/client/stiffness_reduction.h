@@ -6,7 +6,7 @@
 ///   in contact      k = reduced(touch, round_trip)      the force is then k times the stretch
 ///   out of contact  release()
 ///
-/// Deformable objects, equations 4.52 to 4.56. The object counts as a spring k_o behind the coupling k: of the device's way it follows the fraction K = k / (k_o + k), a round trip
+/// Deformable objects, equations 4.52 to 4.56. The object counts as a spring k_o behind the coupling k: of the device's displacement it follows the fraction K = k / (k_o + k), a round trip
 /// late. While the device goes in by w within a round trip, the stretch that the client sees is too long by K w:
 ///
 ///   k_r = k (1 - K w / stretch), not below k (1 - K) and not above k, filtered: mean[n] = lambda k_r + (1 - lambda) mean[n-1]
@@ -36,7 +36,7 @@
 
 namespace tactus {
 
-/// K: fraction of the device's way that an object of k_o follows behind a coupling k, both in N/m. Equation 4.54.
+/// K: fraction of the device's displacement that an object of k_o follows behind a coupling k, both in N/m. Equation 4.54.
 constexpr double followed_fraction(double object, double coupling) noexcept { return coupling / (object + coupling); }
 
 class StiffnessReduction {
@@ -79,7 +79,7 @@ class StiffnessReduction {
 
  private:
   explicit StiffnessReduction(const Options& options) : filter_(options.filter), path_(options.most_delay + std::size_t{1}) {}
-  Vec3 way(std::uint32_t round_trip) const noexcept;
+  Vec3 displacement(std::uint32_t round_trip) const noexcept;
   double filtered(double wanted) noexcept;
 
   double filter_;

@@ -89,13 +89,13 @@ MainHead MainEncoder::head_for(const EncodeRequest<MainState>& request) noexcept
   MainHead head{request.head};
   head.layer = request.layer;
   head.same_frame = request.layer == Layer::visual && !head.key && request.base.tick == request.tick;
-  const double visual = widening_ * thresholds_.visual;
+  const double visual = bound_scale_ * thresholds_.visual;
   trigger_[0] = units(visual);
   limit_[0] = head.visual = units(visual_fraction_ * visual);
   head.touched = touch_ != nullptr && thresholds_.weber_fraction;
   if (!head.touched) return head;
   head.triangle = touch_->triangle;
-  const double haptic = widening_ * haptic_threshold(thresholds_, *touch_);
+  const double haptic = bound_scale_ * haptic_threshold(thresholds_, *touch_);
   trigger_[1] = std::min(trigger_[0], units(haptic));
   limit_[1] = std::min(limit_[0], units(haptic_fraction_ * haptic));
   while (head.haptic < kMaxHapticIndex && haptic_bound(head.haptic + 1) <= limit_[1]) ++head.haptic;
@@ -111,7 +111,7 @@ bool MainEncoder::is_within_bounds() const noexcept {
   return true;
 }
 
-/// The body alone if it is within the bounds; else with what it differs by now, if the device's way has predicted this shape better than the
+/// The body alone if it is within the bounds; else with what it differs by now, if the device's path has predicted this shape better than the
 /// motion so far.
 Following MainEncoder::choose_following(const EncodeRequest<MainState>& request) noexcept {
   const MainState& shown = request.shown;
@@ -271,7 +271,7 @@ class Of final : public DeformableEncoder {
   bool is_layered() const noexcept override { return layered_; }
   /// Where nothing is lost an acknowledgement is late at most.
   void set_link(const LinkState& link) noexcept override { stream_.set_answer(link.loss >= kSomeLoss ? link.answer : 0); }
-  void set_widening(double factor) noexcept override { stream_.codec().set_widening(factor); }
+  void set_bound_scale(double factor) noexcept override { stream_.codec().set_bound_scale(factor); }
   void know(std::unique_ptr<FollowedShape> shape) noexcept override {
     if constexpr (requires { stream_.codec().know(std::move(shape)); }) stream_.codec().know(std::move(shape));
   }

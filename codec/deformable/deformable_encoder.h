@@ -46,7 +46,7 @@ class MainEncoder {
     truth_ = truth;
     touch_ = touch;
   }
-  void set_widening(double factor) noexcept { widening_ = factor; }
+  void set_bound_scale(double factor) noexcept { bound_scale_ = factor; }
   void know(std::unique_ptr<FollowedShape> shape) noexcept { driven_ = std::move(shape); }  ///< pre  the object has a body
   /// time O(vertices * (1 + modes)), no allocation
   Result<Payload> encode(const EncodeRequest<MainState>& request, std::span<std::uint8_t> out) noexcept;
@@ -73,7 +73,7 @@ class MainEncoder {
   const DeformableObject& object_;
   const DeformableThresholds thresholds_;
   const double visual_fraction_, haptic_fraction_;
-  double widening_ = 1;
+  double bound_scale_ = 1;
   double unit_;  // [m] of the grid
   std::uint8_t baseline_span_;
   std::span<const Vec3i> truth_;
@@ -146,7 +146,7 @@ class DeformableEncoder {
   virtual Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept = 0;
   virtual bool is_layered() const noexcept = 0;
   virtual void set_link(const LinkState& link) noexcept = 0;  ///< nothing without Baseline::acknowledged, or with layers
-  virtual void set_widening(double factor) noexcept = 0;      ///< of all thresholds.   pre  factor >= 1
+  virtual void set_bound_scale(double factor) noexcept = 0;      ///< of all thresholds.   pre  factor >= 1
   /// Show what the device of the client does (Sender::know).   pre  the object has a body
   virtual void know(std::unique_ptr<FollowedShape> shape) noexcept = 0;
   virtual void request_key() noexcept = 0;

@@ -28,7 +28,7 @@ ThesisEncoder::ThesisEncoder(const Scene& scene, const DeformableObject& object,
 void ThesisEncoder::list_vertices(const ThesisState& state, Layer layer) noexcept {
   const DeformableThresholds& t = options_.thresholds;
   const auto squared_units = [this](double metres) {
-    const double units = std::ldexp(widening_ * metres, position_exp_);
+    const double units = std::ldexp(bound_scale_ * metres, position_exp_);
     return units * units;
   };
   const double visual = squared_units(t.visual);

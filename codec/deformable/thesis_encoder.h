@@ -28,7 +28,7 @@ class ThesisEncoder {
     truth_ = truth;
     touch_ = touch;
   }
-  void set_widening(double factor) noexcept { widening_ = factor; }
+  void set_bound_scale(double factor) noexcept { bound_scale_ = factor; }
   /// time O(vertices), no allocation
   Result<Payload> encode(const EncodeRequest<ThesisState>& request, std::span<std::uint8_t> out) noexcept;
   void commit(const ThesisState&, ThesisState& next) noexcept { std::swap(next_, next); }
@@ -42,7 +42,7 @@ class ThesisEncoder {
 
   const DeformableObject& object_;
   const DeformableOptions options_;
-  double widening_ = 1;
+  double bound_scale_ = 1;
   std::uint8_t position_exp_, baseline_span_;
   std::span<const Vec3i> truth_;
   const SurfaceTouch* touch_ = nullptr;

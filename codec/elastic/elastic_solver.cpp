@@ -49,7 +49,7 @@ ElasticSolver::ElasticSolver(const Scene& scene, const DeformableObject& object)
       pace_(u_.size()),
       residual_(3 * elimination_.order.size()),
       z_(residual_.size()),
-      way_(residual_.size()),
+      direction_(residual_.size()),
       along_(residual_.size()),
       rotations_(rest_.size()) {
   if (body_.method != Method::velocity_verlet) {
@@ -97,15 +97,15 @@ void ElasticSolver::precondition() noexcept {
   }
 }
 
-/// along = A way; returns way . along.   pre  `ahead_` is 0 at fixed vertices
+/// along = A direction; returns direction . along.   pre  `ahead_` is 0 at fixed vertices
 double ElasticSolver::product() noexcept {
-  for (std::size_t i = 0; i < way_.size(); ++i) ahead_[3 * std::size_t{elimination_.order[i / 3]} + i % 3] = way_[i];
+  for (std::size_t i = 0; i < direction_.size(); ++i) ahead_[3 * std::size_t{elimination_.order[i / 3]} + i % 3] = direction_[i];
   elements_.multiply(ahead_, force_);
   double sum = 0;
-  for (std::size_t i = 0; i < way_.size(); ++i) {
+  for (std::size_t i = 0; i < direction_.size(); ++i) {
     const std::uint32_t v = elimination_.order[i / 3];
-    along_[i] = mass_factor_ * elements_.mass()[v] * way_[i] + stiffness_factor_ * force_[3 * std::size_t{v} + i % 3];
-    sum += way_[i] * along_[i];
+    along_[i] = mass_factor_ * elements_.mass()[v] * direction_[i] + stiffness_factor_ * force_[3 * std::size_t{v} + i % 3];
+    sum += direction_[i] * along_[i];
   }
   return sum;
 }
@@ -121,7 +121,7 @@ void ElasticSolver::solve_round(std::span<const double> load) noexcept {
     const double speed = (u_[at] - start_[at]) / reach_;
     residual_[i] = -(elements_.mass()[v] * (rate * speed - pace_[at] / reach_) + force_[at] - load[at]);
   }
-  std::ranges::fill(way_, 0);
+  std::ranges::fill(direction_, 0);
   double before = 0;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     precondition();
@@ -130,10 +130,10 @@ void ElasticSolver::solve_round(std::span<const double> load) noexcept {
     if (!(now > 0)) return;
     const double back = iteration == 0 ? 0 : now / before;
     before = now;
-    for (std::size_t i = 0; i < way_.size(); ++i) way_[i] = z_[i] + back * way_[i];
+    for (std::size_t i = 0; i < direction_.size(); ++i) direction_[i] = z_[i] + back * direction_[i];
     const double far = now / product();
-    for (std::size_t i = 0; i < way_.size(); ++i) {
-      u_[3 * std::size_t{elimination_.order[i / 3]} + i % 3] += far * way_[i];
+    for (std::size_t i = 0; i < direction_.size(); ++i) {
+      u_[3 * std::size_t{elimination_.order[i / 3]} + i % 3] += far * direction_[i];
       residual_[i] -= far * along_[i];
     }
   }

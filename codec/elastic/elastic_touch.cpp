@@ -100,7 +100,7 @@ bool ElasticTouch::is_inside(const Vec3& place, const Foot& foot, std::span<cons
   return dot(place - foot.point, cross(vertices[b] - vertices[a], vertices[c] - vertices[a])) < 0;
 }
 
-/// Where the way of the device met the surface, given its foot after.
+/// Where the path of the device met the surface, given its foot after.
 ElasticTouch::Foot ElasticTouch::met(const Vec3& place, const Foot& foot, std::span<const Vec3> vertices,
                                      const State& state) const noexcept {
   if (!state.last) return foot;

@@ -88,7 +88,7 @@ bool LoadEncoder::within(const Vec3i& held, const Vec3i& truth, double fraction)
   double distance = 0;
   for (std::size_t a = 0; a < 3; ++a) distance += square(static_cast<double>(truth[a]) - held[a]);
   const double force = std::max(std::sqrt(length_squared(truth)) - kRounding, floor_);
-  return distance <= square(std::max(0.0, fraction * widening_ * thresholds_.weber_fraction * force - kRounding));
+  return distance <= square(std::max(0.0, fraction * bound_scale_ * thresholds_.weber_fraction * force - kRounding));
 }
 
 /// A vector of the object is off by more than `fraction` of its bound, and a packet could do better.

@@ -53,7 +53,7 @@ class LoadEncoder {
   void commit(const LoadState& base, LoadState& next) noexcept;
   void acknowledge(std::uint64_t number) noexcept { acknowledged_ = acknowledged_ || number == number_; }
   void set_link(const LinkState& link) noexcept;  ///< nothing without Baseline::acknowledged
-  void set_widening(double factor) noexcept { widening_ = factor; }
+  void set_bound_scale(double factor) noexcept { bound_scale_ = factor; }
 
  private:
   bool within(const Vec3i& held, const Vec3i& truth, double fraction) const noexcept;
@@ -65,7 +65,7 @@ class LoadEncoder {
   LoadThresholds thresholds_;
   bool is_acknowledged_;  // Baseline::acknowledged
   double floor_ = 0;      // in grid steps
-  double widening_ = 1;
+  double bound_scale_ = 1;
   const std::vector<Vec3i>& truth_;   // of this tick
   std::vector<Vec3i> wanted_;         // as decoders will hold it
   std::vector<std::size_t> pending_;  // objects, by their place in Scene::moving()

@@ -14,7 +14,7 @@ enum class Baseline : std::uint8_t {
              ///< receiver that holds those whose baseline it lacks
 };
 
-/// What the way to the receiver and back does, as measured. It decides when Baseline::acknowledged sends a state again.
+/// What the link to the receiver and back does, as measured. It decides when Baseline::acknowledged sends a state again.
 struct LinkState {
   std::int64_t answer = 0;  ///< [ticks] after which a packet that arrived is acknowledged: round trip, jitter, time between
                             ///< acknowledgements. 0: not known, nothing is sent again

@@ -81,26 +81,26 @@ class PacketOrder {
     return newest_ + 1 + static_cast<std::uint16_t>(sequence - newest_ - 1);
   }
   /// The packets of a session come with their numbers, which count from any value above 0.
-  /// in   number  of one that comes while no state is kept: none is overtaken yet, whatever was refused before
+  /// in   number  of one that comes while no state is kept: none is reordered yet, whatever was refused before
   void begin(std::uint64_t number) noexcept {
     numbered_ = true;
     newest_ = number - 1;
   }
   bool is_numbered() const noexcept { return numbered_; }
   /// True for a repeated packet, and for one that others sent after it came before.
-  bool is_overtaken(std::uint64_t number) const noexcept { return number <= newest_; }
+  bool is_reordered(std::uint64_t number) const noexcept { return number <= newest_; }
   /// True for a number that one sender cannot reach: another sender, or a long outage at the receiver (R-PKT-7).
   bool is_foreign(std::uint64_t number) const noexcept { return !numbered_ && number > newest_ + kAhead; }
   /// Ticks of one sender never decrease. A key packet with an earlier tick starts a new sequence.
   bool fits(std::uint64_t number, bool key, std::int64_t tick) const noexcept {
-    return is_overtaken(number) ? tick <= tick_ : key || tick >= tick_;
+    return is_reordered(number) ? tick <= tick_ : key || tick >= tick_;
   }
   /// True for a key packet after which no state before it may serve as a baseline.   pre  fits()
   bool restarts(std::uint64_t number, bool key, std::int64_t tick) const noexcept {
-    return key && !is_overtaken(number) && (is_foreign(number) || tick < tick_);
+    return key && !is_reordered(number) && (is_foreign(number) || tick < tick_);
   }
   void accept(std::uint64_t number, std::int64_t tick, std::optional<std::int64_t> now) noexcept {
-    if (is_overtaken(number)) return;
+    if (is_reordered(number)) return;
     newest_ = number;
     tick_ = tick;
     arrival_ = now;

@@ -68,7 +68,7 @@ class SubstreamDecoder {
     DecodedPacket out;
     out.number = number;
     out.sequence = static_cast<std::uint16_t>(number);
-    if (order_.is_overtaken(out.number) && (out.number < *states_.lowest() || states_.find(out.number) != nullptr))
+    if (order_.is_reordered(out.number) && (out.number < *states_.lowest() || states_.find(out.number) != nullptr))
       return fail(Errc::state, "R-PKT-5");
     const auto head = codec_.read_head(payload);
     if (!head) return placed(head.error());

@@ -27,7 +27,7 @@ struct CurveWeights {
   std::int64_t position = 0, rotation = 0, change = 0;
 };
 
-/// A cubic of the fraction u of the way: from 0 to 1 and level at both ends; its companion is 0 at both and meets the end with slope 1.
+/// A cubic of the fraction u of the path: from 0 to 1 and level at both ends; its companion is 0 at both and meets the end with slope 1.
 ///   error = 3 u^2 - 2 u^3,  change = u^3 - u^2
 struct Cubic {
   std::int64_t error, change;  ///< x 2^-30

@@ -12,13 +12,13 @@ namespace tactus {
 std::int64_t DevicePath::add(std::uint64_t number, const RigidState& state) noexcept {
   const std::int64_t ahead = state.tick - passed_;
   if (ahead <= 0) return ahead;
-  std::size_t overtook = 0;
-  while (overtook < count_ && packet_at(overtook + 1).number > number) ++overtook;
-  if (overtook == kPackets) return 0;
+  std::size_t newer = 0;
+  while (newer < count_ && packet_at(newer + 1).number > number) ++newer;
+  if (newer == kPackets) return 0;
   next_ = (next_ + 1) % kPackets;
   count_ = std::min(count_ + 1, kPackets);
-  for (std::size_t back = 1; back <= overtook; ++back) packet_at(back) = packet_at(back + 1);
-  packet_at(overtook + 1) = {number, true, state};
+  for (std::size_t back = 1; back <= newer; ++back) packet_at(back) = packet_at(back + 1);
+  packet_at(newer + 1) = {number, true, state};
   return ahead;
 }
 
@@ -43,7 +43,7 @@ std::optional<DevicePath::Place> DevicePath::place(std::int64_t tick) const noex
   if (!device) return std::nullopt;
   for (std::size_t back = 1; back <= count_; ++back) {
     const Packet& packet = packet_at(back);
-    if (packet.acts && packet.state.tick <= *device) return Place{packet.state, *device};
+    if (packet.takes_effect && packet.state.tick <= *device) return Place{packet.state, *device};
   }
   return std::nullopt;
 }

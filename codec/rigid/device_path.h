@@ -23,18 +23,18 @@ class DevicePath {
   /// in   device  device_scene()
   explicit DevicePath(SharedScene device) : scene_(std::move(device)) {}
 
-  /// A packet of the device brought a state, perhaps one that others have overtaken.   in  number  of it, not added before
-  /// out  ticks until it acts; 0 or less: it comes too late to act, and is left out.   time O(packets that overtook it)
+  /// A packet of the device brought a state, perhaps a reordered one.   in  number  of it, not added before
+  /// out  ticks until it takes effect; 0 or less: it comes too late for that, and is left out.   time O(newer packets)
   std::int64_t add(std::uint64_t number, const RigidState& state) noexcept;
-  /// Packets below `newest` that did not arrive do not act; those above may have.   in  arrived  bool(number)
+  /// Packets below `newest` that did not arrive take no effect; those above may have arrived.   in  arrived  bool(number)
   template <class Arrived>
   void settle(std::uint64_t newest, Arrived&& arrived) noexcept {
     for (std::size_t back = 1; back <= count_; ++back) {
       Packet& packet = packet_at(back);
       if (packet.number + kSettled < newest) return;
-      const bool acts = packet.number > newest || arrived(packet.number);
-      if (acts != packet.acts) ++revision_;
-      packet.acts = acts;
+      const bool takes_effect = packet.number > newest || arrived(packet.number);
+      if (takes_effect != packet.takes_effect) ++revision_;
+      packet.takes_effect = takes_effect;
     }
   }
   /// From a tick of the server on the device's tick is the server's less `offset`, but never below one before. Nothing happens if a later
@@ -62,7 +62,7 @@ class DevicePath {
   static constexpr std::uint64_t kSettled = 128;  // numbers below the newest: nothing more is reported of them
   struct Packet {
     std::uint64_t number = 0;
-    bool acts = true;
+    bool takes_effect = true;
     RigidState state;
   };
   struct Shift {

@@ -133,7 +133,7 @@ class ErrorRatio {
  public:
   static constexpr std::size_t kMostContacts = 8;  ///< of the object; those after them are not looked at
 
-  /// in  triggers  widened;  truth  pose of the object;  decay_rate  ForceTrend, of all its contacts
+  /// in  triggers  scaled;  truth  pose of the object;  decay_rate  ForceTrend, of all its contacts
   /// time O(contacts), about 30 ns for each of the object's
   ErrorRatio(std::uint32_t object, const Pose& truth, const Contacts& contacts, const RigidTriggers& triggers,
              double decay_rate = 0) noexcept;

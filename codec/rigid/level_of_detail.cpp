@@ -32,7 +32,7 @@ LevelsOfDetail::LevelsOfDetail(const Scene& scene)
   limits_.back() = square(reach);
 }
 
-void LevelsOfDetail::look_from(std::span<const Vec3> places) noexcept {
+void LevelsOfDetail::set_viewpoints(std::span<const Vec3> places) noexcept {
   const std::size_t before = std::exchange(count_, 0);
   const double unit = std::ldexp(1.0, -scene_.grid.position);
   for (const Vec3& p : places)

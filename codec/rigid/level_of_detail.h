@@ -26,9 +26,9 @@ class LevelsOfDetail {
 
   /// Places [m] that the client looks from, kMostPlaces at most; what is not finite does not count. Without any it is sent nothing; before the
   /// first call of all, in full.
-  void look_from(std::span<const Vec3> places) noexcept;
+  void set_viewpoints(std::span<const Vec3> places) noexcept;
 
-  bool looks() const noexcept { return looks_; }  ///< look_from() was called
+  bool looks() const noexcept { return looks_; }  ///< set_viewpoints() was called
   std::uint8_t of(std::uint32_t object) const noexcept { return levels_[object] & 7u; }
   /// It is out of interest, as the client knows: it need not be looked at but by scan().
   bool is_left_out(std::uint32_t object) const noexcept { return levels_[object] == kLeftOut; }
@@ -60,7 +60,7 @@ class LevelsOfDetail {
   double step_;                                  // square of the distance that a place may move before all is looked at again
   std::array<Place, kMostPlaces> places_{}, scanned_{};
   std::size_t count_ = 0;
-  bool looks_ = false;                       // look_from() was called
+  bool looks_ = false;                       // set_viewpoints() was called
   std::size_t slice_, left_ = 0, next_ = 0;  // objects of a tick; that are still to be looked at; index of the next
   std::vector<std::uint8_t> levels_;         // by object
 };

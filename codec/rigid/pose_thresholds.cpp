@@ -34,7 +34,7 @@ Result<PoseThresholds> pose_thresholds(double distance, double angle, const Grid
   return out;
 }
 
-PoseThresholds widened(double distance, double angle, double factor, const GridExponents& grid) noexcept {
+PoseThresholds scaled(double distance, double angle, double factor, const GridExponents& grid) noexcept {
   return pose_thresholds(std::min(factor * distance, 999'999.0), std::min(factor * angle, std::numbers::pi), grid)
       .value_or(PoseThresholds{});
 }

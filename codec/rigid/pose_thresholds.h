@@ -20,7 +20,7 @@ struct PoseThresholds {
 Result<PoseThresholds> pose_thresholds(double distance, double angle, const GridExponents& grid) noexcept;
 
 /// Of `factor` times both, as far as there are such thresholds.   pre  pose_thresholds(distance, angle) gives some; factor >= 1
-PoseThresholds widened(double distance, double angle, double factor, const GridExponents& grid) noexcept;
+PoseThresholds scaled(double distance, double angle, double factor, const GridExponents& grid) noexcept;
 
 /// A fraction of what is permitted; the grid level stays.
 PoseThresholds scaled(PoseThresholds t, double fraction) noexcept;

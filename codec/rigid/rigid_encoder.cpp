@@ -74,7 +74,7 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, co
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
     sent_.push_back({.path = {.object = i, .state = initial_state(scene, i)}});
   if (scene.interest) levels_.emplace(scene);
-  set_widening(1);
+  set_bound_scale(1);
 }
 
 void RigidEncoder::know(const DevicePath& path) {
@@ -84,20 +84,20 @@ void RigidEncoder::know(const DevicePath& path) {
   choice_->know(path, driven_->past);
 }
 
-void RigidEncoder::set_widening(double factor) noexcept {
+void RigidEncoder::set_bound_scale(double factor) noexcept {
   for (std::size_t lod = 0; lod < (levels_ ? bounds_.size() : 1); ++lod) {
     Bounds& b = bounds_[lod];
-    b.widening = std::ldexp(factor, static_cast<int>(lod));
-    b.visual = widened(triggers_.visual_position, triggers_.visual_rotation, b.widening, scene_.grid);
-    b.fixed = widened(triggers_.fixed_position, triggers_.fixed_rotation, b.widening, scene_.grid);
+    b.bound_scale = std::ldexp(factor, static_cast<int>(lod));
+    b.visual = scaled(triggers_.visual_position, triggers_.visual_rotation, b.bound_scale, scene_.grid);
+    b.fixed = scaled(triggers_.fixed_position, triggers_.fixed_rotation, b.bound_scale, scene_.grid);
     if (triggers_.reduction == Reduction::none) b.visual.level = b.fixed.level = 0;  // the reference is as exact as the grid
     b.early = scaled(b.visual, early_);
   }
   wakes_all_ = true;
 }
 
-void RigidEncoder::look_from(std::span<const Vec3> places) noexcept {
-  if (levels_) levels_->look_from(places);
+void RigidEncoder::set_viewpoints(std::span<const Vec3> places) noexcept {
+  if (levels_) levels_->set_viewpoints(places);
 }
 
 void RigidEncoder::set_link(const LinkState& link) noexcept {
@@ -245,12 +245,12 @@ RigidDecision RigidEncoder::decide_alone(const SmoothedPath& path, bool early) c
   const double force_ratio = haptic_ratio_of(object, shown);
   const Bounds& bounds = bounds_of(object);
   RigidDecision out;
-  if (force_ratio > bounds.widening && can_improve(object, shown)) out.reason = Reason::haptic;
+  if (force_ratio > bounds.bound_scale && can_improve(object, shown)) out.reason = Reason::haptic;
   else if (!within(bounds.visual, shown, truth) || (is_smoothing(path.state, tick) && !within(bounds.visual, predicted, truth)))
     out.reason = Reason::visual;
   else if (heartbeat_ > 0 && tick - path.state.tick >= heartbeat_) out.reason = Reason::heartbeat;
   out.is_early =
-      early && (!within(bounds.early, shown, truth) || (force_ratio > early_ * bounds.widening && can_improve(object, shown)));
+      early && (!within(bounds.early, shown, truth) || (force_ratio > early_ * bounds.bound_scale && can_improve(object, shown)));
   return out;
 }
 
@@ -258,7 +258,7 @@ RigidDecision RigidEncoder::decide_alone(const SmoothedPath& path, bool early) c
 RigidDecision RigidEncoder::decide(std::uint32_t object, bool early) noexcept {
   const SmoothedPath& path = sent_[object].path;
   if (work_ == nullptr || (driven_ && path.state.predictor == Predictor::driven)) return decide_alone(path, early);
-  const RigidWork::Asked asked{sent_[object].version, object, bounds_of(object).widening, early ? early_ : 1};
+  const RigidWork::Asked asked{sent_[object].version, object, bounds_of(object).bound_scale, early ? early_ : 1};
   if (const RigidDecision* const known = work_->find(read_, asked)) return *known;
   const RigidDecision out = decide_alone(path, early);
   work_->put(read_, asked, out);
@@ -306,11 +306,11 @@ void RigidEncoder::add_joining(const EncodeRequest<RigidStates>& request) noexce
   std::ranges::sort(pending_, {}, &Pending::object);
 }
 
-RigidTriggers RigidEncoder::widened_triggers(std::uint32_t object) const noexcept {
+RigidTriggers RigidEncoder::scaled_triggers(std::uint32_t object) const noexcept {
   RigidTriggers out = triggers_;
   for (double* bound : {&out.visual_position, &out.visual_rotation, &out.weber_fraction, &out.perceptual_fraction,
                         &out.fixed_position, &out.fixed_rotation})
-    *bound *= bounds_of(object).widening;
+    *bound *= bounds_of(object).bound_scale;
   return out;
 }
 
@@ -360,7 +360,7 @@ void RigidEncoder::choose_smoothing(Pending& update, CodedUpdate& coded, const A
   for (; tried.retained < 4; ++tried.retained) {
     const RigidPose kept = smoothed(own, tried, part_kept(offset, tried.retained), tried.tick);
     const Bounds& bounds = bounds_of(object);
-    if (!within(bounds.visual, kept, truth_.state(object)) || haptic_ratio_of(object, kept) > bounds.widening) continue;
+    if (!within(bounds.visual, kept, truth_.state(object)) || haptic_ratio_of(object, kept) > bounds.bound_scale) continue;
     tried.smoothing_exp = longest_smoothing_exp(error_trajectory(tried, kept, truth_.samples()[object], acceleration), ratio, scene_.tick_rate);
     if (tried.smoothing_exp == 0) return;
     update.after.path.state = tried;
@@ -379,7 +379,7 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
   const Prediction prediction{base, predictor_.pose(base, request.tick)};
   const RigidState truth = truth_of(object);
   if ((truth_.acceleration() == nullptr && !choice_) || truth_.is_held(object)) return quantise(update, prediction, truth);
-  const RigidTriggers bounds = widened_triggers(object);
+  const RigidTriggers bounds = scaled_triggers(object);
   const Predictor predictor = choice_ ? chosen(object, truth, bounds) : Predictor::linear;
   const bool is_linear = predictor == Predictor::linear;
   const ErrorRatio ratio(object, truth_.samples()[object].pose, truth_.contacts(), bounds,
@@ -395,7 +395,7 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
 }
 
 /// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
-/// coarse for the permitted force error, or the way too long for one update, the nearest place that it can name.
+/// coarse for the permitted force error, or the distance too long for one update, the nearest place that it can name.
 Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction, const RigidState& signalled) const noexcept {
   const std::uint32_t object = update.object;
   const RigidState& truth = truth_.state(object);
@@ -418,9 +418,9 @@ Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& pr
     const RigidPose shown{state->position, state->rotation};
     if (level > 0 && !within(bounds.visual, shown, truth)) continue;
     const double force_ratio = haptic_ratio_of(object, shown);
-    if ((level > 0 || finest) && force_ratio > bounds.widening) continue;
+    if ((level > 0 || finest) && force_ratio > bounds.bound_scale) continue;
     update.after.path.state = *state;
-    if (force_ratio <= kHapticFraction * bounds.widening) return coded;
+    if (force_ratio <= kHapticFraction * bounds.bound_scale) return coded;
     finest = coded;
   }
   return *finest;  // that of level 0, if no other
@@ -458,9 +458,9 @@ bool RigidEncoder::shares() const noexcept { return work_ != nullptr && !driven_
 /// All that the payload depends on.
 void RigidEncoder::make_key(const EncodeRequest<RigidStates>& request) noexcept {
   key_.clear();
-  const auto widening = std::bit_cast<std::array<std::uint32_t, 2>>(bounds_[0].widening);
+  const auto bound_scale = std::bit_cast<std::array<std::uint32_t, 2>>(bounds_[0].bound_scale);
   for (const std::uint32_t word : {request.head.baseline_delta, request.head.tick_delta, request.head.key ? 1u : 0u,
-                                   loses_ ? 1u : 0u, widening[0], widening[1]})
+                                   loses_ ? 1u : 0u, bound_scale[0], bound_scale[1]})
     key_.push_back(word);
   for (const Pending& update : pending_) {
     const Sent& sent = sent_[update.object];

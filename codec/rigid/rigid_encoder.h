@@ -52,8 +52,8 @@ class RigidEncoder {
   void acknowledge(std::uint64_t number) noexcept;
   void forget_last() noexcept;
   void set_link(const LinkState& link) noexcept;
-  void set_widening(double factor) noexcept;  ///< of all thresholds.   pre  factor >= 1
-  void look_from(std::span<const Vec3> places) noexcept;
+  void set_bound_scale(double factor) noexcept;  ///< of all thresholds.   pre  factor >= 1
+  void set_viewpoints(std::span<const Vec3> places) noexcept;
 
  private:
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min() / 2;  // a tick
@@ -72,9 +72,9 @@ class RigidEncoder {
     bool follow_up = false;
     VersionedPath after;  // the state of its path is what the decoder will hold
   };
-  /// Of a level of detail, widened.
+  /// Of a level of detail, scaled.
   struct Bounds {
-    double widening = 1;
+    double bound_scale = 1;
     PoseThresholds visual, fixed, early;  // early: over which an object joins a packet
   };
   struct DrivenParts {
@@ -103,7 +103,7 @@ class RigidEncoder {
   void collect(const EncodeRequest<RigidStates>& request) noexcept;
   bool is_silent() const noexcept { return silence_ > 0 && truth_.tick() - last_ >= silence_; }
   void add_joining(const EncodeRequest<RigidStates>& request) noexcept;
-  RigidTriggers widened_triggers(std::uint32_t object) const noexcept;
+  RigidTriggers scaled_triggers(std::uint32_t object) const noexcept;
   RigidState truth_of(std::uint32_t object) const noexcept;
   Predictor chosen(std::uint32_t object, const RigidState& truth, const RigidTriggers& bounds) const noexcept;
   RigidState with_look_ahead(const RigidState& truth, std::uint32_t object, const Acceleration::Motion& acceleration,

@@ -124,10 +124,10 @@ void DrivenBody::start_screw(const Scene& scene, const DrivenConstants::Body& bo
     about_[i] = limited(round_div(angular[i] << 24, speed), 30);
   }
   const std::int64_t weight = length(gravity_);
-  const Vec way = turned(rows, along_);
-  const std::int64_t fall = round_shift(dot(way, down_), 30);
+  const Vec direction = turned(rows, along_);
+  const std::int64_t fall = round_shift(dot(direction, down_), 30);
   Vec level;
-  for (std::size_t i = 0; i < 3; ++i) level[i] = way[i] - round_shift(fall * down_[i], 30);
+  for (std::size_t i = 0; i < 3; ++i) level[i] = direction[i] - round_shift(fall * down_[i], 30);
   rub_ = 0;
   if (weight > 0) {
     const std::int64_t slide = limited(scaled(scene.motion->slide_deceleration, scene.grid.velocity, 16), 30);
@@ -208,12 +208,12 @@ std::int64_t DrivenBody::load(const Vec& pull) const noexcept {
 
 void DrivenBody::push(const Scene& scene, const DrivenConstants::Body& body, const Rows& rows, const Vec& pull) noexcept {
   if (speed_ == 0) return;
-  const Vec acceleration = turned(rows, pull), way = turned(rows, along_), lever = cross(about_, point_);
+  const Vec acceleration = turned(rows, pull), direction = turned(rows, along_), lever = cross(about_, point_);
   const std::int64_t loaded = load(acceleration);
   if (first_load_ < 0) first_load_ = loaded;
   Vec driven;  // motion of the point at speed 1
   for (std::size_t i = 0; i < 3; ++i) driven[i] = limited(along_[i] + round_shift(lever[i], 23), 30);
-  const std::int64_t drive = round_shift(dot(pull, driven) + dot(gravity_, way), 24);
+  const std::int64_t drive = round_shift(dot(pull, driven) + dot(gravity_, direction), 24);
   const std::int64_t drag =
       (std::int64_t{from_.contact.drag} << (16 - DrivenContact::kDrag)) + round_shift(rub_ * (loaded - first_load_), 24);
   const std::int64_t rate = scene.tick_rate;
@@ -221,7 +221,7 @@ void DrivenBody::push(const Scene& scene, const DrivenConstants::Body& body, con
   const std::int64_t step = std::min(round_div(speed_ << 5, rate), bit(31));
   Vec half;
   for (std::size_t i = 0; i < 3; ++i) {
-    place_[i] = limited(place_[i] + round_shift(step * way[i], 24), 58);
+    place_[i] = limited(place_[i] + round_shift(step * direction[i], 24), 58);
     half[i] = round_shift(step * about_[i], 22);
   }
   rotation_ = renormalise(multiply(rotation_, small_turn(half)));
@@ -253,8 +253,8 @@ namespace {
 constexpr std::int64_t kWhole = 1 << 15;
 
 /// in   fraction  x 2^-15
-std::int64_t part_of(std::int64_t way, std::int64_t fraction) noexcept {
-  return fraction == kWhole ? way : round_shift(way * fraction, 15);
+std::int64_t part_of(std::int64_t whole, std::int64_t fraction) noexcept {
+  return fraction == kWhole ? whole : round_shift(whole * fraction, 15);
 }
 
 /// Half the angle turned in `dt` ticks, 2^32 to the full circle, and the axis. spec 40-rigid 4
@@ -290,7 +290,7 @@ std::int64_t slide_time(const Vec3i& velocity, std::uint32_t tick_rate, std::int
 /// The tick in which a sliding object comes to rest.
 std::int64_t last_tick(std::int64_t rest) noexcept { return (rest + 255) >> 8; }
 
-/// Fraction of the way at constant velocity that is left of it after `dt` ticks of sliding, x 2^-15.   pre  0 < dt <= last_tick(rest)
+/// Fraction of the distance at constant velocity that is left of it after `dt` ticks of sliding, x 2^-15.   pre  0 < dt <= last_tick(rest)
 std::int64_t slide_fraction(std::int64_t dt, std::int64_t rest) noexcept {
   const std::int64_t t = dt << 8;
   return t <= rest ? kWhole - round_div(t << 14, rest) : round_div(rest << 14, t);

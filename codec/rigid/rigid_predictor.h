@@ -58,7 +58,7 @@ class DrivenBody {
   Vec along_{}, about_{};   // pushed: the screw at speed 1 in the object's frame, x 2^-24, x 2^-19 rad/m
   std::int64_t speed_ = 0;  // pushed: x 2^-27 m/s
   std::int64_t rub_ = 0,
-               first_load_ = 0;  // pushed: friction of the ground on the way, x 2^-24; its load at the start, x 2^-16 m/s^2
+               first_load_ = 0;  // pushed: friction of the ground on its path, x 2^-24; its load at the start, x 2^-16 m/s^2
 };
 
 // ==== rigid predictor ====

@@ -38,7 +38,7 @@ class RigidWork {
   struct Asked {
     std::uint64_t version = 0;
     std::uint32_t object = 0;
-    double widening = 1, early = 1;
+    double bound_scale = 1, early = 1;
     friend bool operator==(const Asked&, const Asked&) = default;
   };
   /// A payload and what it makes of the paths.

@@ -18,7 +18,7 @@ namespace tactus {
 enum class RigidProfile : std::uint8_t {
   thesis,  ///< linear dead reckoning from true velocities; clients jump to an update, or smooth what they show (Interpolation)
   main,  ///< updates send look-ahead velocities, to last longer, and how clients pass over to them: what is
-         ///< shown and rendered does not jump, and the bounds hold on the way
+         ///< shown and rendered does not jump, and the bounds hold meanwhile
 };
 
 /// How the stream of a deformable object is coded.

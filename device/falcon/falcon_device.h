@@ -2,7 +2,7 @@
 /// Novint Falcon: three axes, four buttons, USB. Its light is red until it is homed, then green, and blue while it is out of reach.
 ///
 /// Each frame that goes out carries the force and brings a sample back. write() sends one at once; read() takes the answer, and sends one
-/// itself if none is due. What was lost on the way is asked for again; only silence for kAnswerTime ends the use of the device.
+/// itself if none is due. What was lost is asked for again; only silence for kAnswerTime ends the use of the device.
 ///
 /// The Falcon keeps the last force that it was sent. If this process is killed, another one that open() started makes it let go.
 #pragma once

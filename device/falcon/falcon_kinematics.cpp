@@ -49,7 +49,7 @@ InPlane in_plane(std::size_t leg, const Vec3& p) noexcept {
   return {u.x * p.x + u.y * p.y + kInU, u.x * p.y - u.y * p.x + kInV, p.z};
 }
 
-/// How far the rod reaches within the plane; none: it is shorter than the way out of it.
+/// How far the rod reaches within the plane; none: it is shorter than the distance out of it.
 std::optional<double> reach(double v) noexcept {
   const double square = kRod * kRod - v * v;
   if (!(square > 0)) return std::nullopt;
@@ -113,8 +113,8 @@ Result<Pose> pose_at(const Vec3& position) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
     const auto [u, v, w] = in_plane(i, position);
     const double rod = reach(v).value_or(0) + kJoints;
-    const double way = std::hypot(u, w);
-    const double cos = (way * way + kArm * kArm - rod * rod) / (2 * kArm * way);
+    const double distance = std::hypot(u, w);
+    const double cos = (distance * distance + kArm * kArm - rod * rod) / (2 * kArm * distance);
     if (!(std::abs(cos) < 1)) return fail(Errc::invalid, "R-DEV-6");
     angles[i] = std::atan2(w, u) - std::acos(cos);
   }

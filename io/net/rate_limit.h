@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What senders of datagrams may make a server do, before it looks into what they say: functions of time. spec/70-session.md section 11.6.
+/// What senders of datagrams may make a server do, before it looks into what they send: functions of time. spec/70-session.md section 11.6.
 #pragma once
 
 #include <array>

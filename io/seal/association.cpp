@@ -49,9 +49,9 @@ Cookies::Look Cookies::look(std::uint64_t now, std::span<const std::uint8_t> who
   for (Key* key : {&current_, &before_}) {
     gnutls_datum_t datum = datum_of(*key);
     const int found = gnutls_dtls_cookie_verify(&datum, untouched(who), who.size(), untouched(wire), wire.size(), &out.state);
-    if (found == GNUTLS_E_BAD_COOKIE) out.verdict = Verdict::unproven;
+    if (found == GNUTLS_E_BAD_COOKIE) out.verdict = Verdict::unvalidated;
     if (found != 0) continue;
-    out.verdict = Verdict::proven;
+    out.verdict = Verdict::validated;
     break;
   }
   return out;
@@ -287,7 +287,7 @@ Association::Inside Association::open(const RecordHead& head, std::span<const st
                                       std::span<std::uint8_t> out) noexcept {
   const bool is_old = was_heard(head.number);
   inbox_ = wire;
-  has_spoken_ = true;  // what GnuTLS may say now is no flight of the handshake
+  has_spoken_ = true;  // what GnuTLS may send now is no flight of the handshake
   const std::size_t before = flight_.size();
   ssize_t size = GNUTLS_E_AGAIN;  // first GnuTLS drops what it still has of damaged datagrams of the handshake
   for (int i = 0; i < kMostRecords && !inbox_.empty() && (size == GNUTLS_E_AGAIN || size == GNUTLS_E_INTERRUPTED); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One DTLS association, and the cookies by which an address proves itself. Internal to the library.
+/// One DTLS association, and the cookies that validate an address. Internal to the library.
 #pragma once
 
 #include <gnutls/dtls.h>
@@ -18,17 +18,17 @@
 namespace tactus::seal {
 
 // ==== cookies ====
-// Cookies by which an address proves itself, without any memory of it. spec/70-session.md section 11.3.
+// Cookies that validate an address, without any memory of it. spec/70-session.md section 11.3.
 
 class Cookies {
  public:
   /// err  internal R-SEA-6: the system has no random bits
   static Result<Cookies> create(std::uint64_t now);
 
-  enum class Verdict { proven, unproven, no_hello };
+  enum class Verdict { validated, unvalidated, no_hello };
   struct Look {
     Verdict verdict = Verdict::no_hello;
-    gnutls_dtls_prestate_st state{};  ///< for the association, if proven
+    gnutls_dtls_prestate_st state{};  ///< for the association, if validated
   };
   /// in   who  bytes of the sender's address;  wire  a datagram that begins with a ClientHello
   Look look(std::uint64_t now, std::span<const std::uint8_t> who, std::span<const std::uint8_t> wire) noexcept;
@@ -126,7 +126,7 @@ class Association {
   };
   /// in   wire  a datagram whose only record is alert or application_data of epoch 1   pre  open, out.size() >= kLargestSealed
   Inside open(const RecordHead& head, std::span<const std::uint8_t> wire, std::span<std::uint8_t> out) noexcept;
-  /// The alert close_notify: say no more.   pre  open
+  /// The alert close_notify: nothing more is sent.   pre  open
   std::span<const std::uint8_t> close() noexcept;
   /// A fatal alert; it changes nothing here.   out  in `out`, empty: GnuTLS refuses   pre  out.size() >= kLargestSealed
   std::span<const std::uint8_t> alert(std::uint8_t what, std::span<std::uint8_t> out) noexcept;

@@ -34,8 +34,8 @@ struct Counters {
   std::uint64_t unauthentic = 0;  ///< records dropped: forged, damaged, or of an association before
   std::uint64_t replayed = 0;     ///< records dropped that had been heard, or were too old to know
   std::uint64_t strangers = 0;    ///< datagrams dropped that belong to no association and no handshake, or are no record
-  std::uint64_t cookies = 0;      ///< answers to addresses that had not proven themselves
-  std::uint64_t limited = 0;      ///< datagrams dropped before anything was done: their sender said too many
+  std::uint64_t cookies = 0;      ///< answers to addresses that were not validated
+  std::uint64_t limited = 0;      ///< datagrams dropped before anything was done: their sender sent too many
 };
 
 // ==== key ====

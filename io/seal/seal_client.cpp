@@ -94,7 +94,7 @@ Result<std::optional<std::span<const std::uint8_t>>> Client::open(std::uint64_t 
   if (in.link->stage() != Association::Stage::open) {
     in.is_doubted = in.is_doubted || (in.was_answered && says_wrong_key(wire));  // it changes nothing else
     if (!is_handshake || in.link->stage() == Association::Stage::broken) return std::nullopt;
-    if (!in.has_cookie && message_type(wire) != kHelloVerifyRequest) return std::nullopt;  // the server has said nothing else yet
+    if (!in.has_cookie && message_type(wire) != kHelloVerifyRequest) return std::nullopt;  // the server has sent nothing else yet
     in.has_cookie = true;
     in.advance(now, wire);
     return std::nullopt;

@@ -19,7 +19,7 @@ constexpr std::uint64_t kPatience =
 constexpr std::uint64_t kRepeatEvery = 50'000;  // [us] at most, also of alerts
 constexpr int kRepetitions = 3;                 // of what ends an association
 constexpr std::size_t kInbox = 4;               // datagrams of a handshake that wait
-constexpr std::size_t kAmplification = 3;       // to an address that has not proven itself
+constexpr std::size_t kAmplification = 3;       // to an address that is not validated
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -65,9 +65,9 @@ struct Server::Impl {
   void forget(std::uint64_t id);
   void speak(std::uint64_t now, Peer& peer) {
     peer.spoke_at = now;
-    say(peer.at, peer.link->flight());
+    send(peer.at, peer.link->flight());
   }
-  void say(const net::Address& to, std::span<const std::uint8_t> bytes) {
+  void send(const net::Address& to, std::span<const std::uint8_t> bytes) {
     constexpr std::size_t kMost = 1024;  // of a program that does not poll
     if (!bytes.empty() && out.size() < kMost) out.emplace_back(to, Bytes(bytes.begin(), bytes.end()));
   }
@@ -143,11 +143,11 @@ void Server::Impl::hear_hello(std::uint64_t now, const net::Address& from, std::
     ++counters.strangers;
     return;
   }
-  if (look.verdict == Cookies::Verdict::unproven) {
-    const auto said = cookies->answer(from.bytes());
-    if (said.empty() || said.size() > kAmplification * wire.size()) return;
+  if (look.verdict == Cookies::Verdict::unvalidated) {
+    const auto reply = cookies->answer(from.bytes());
+    if (reply.empty() || reply.size() > kAmplification * wire.size()) return;
     ++counters.cookies;
-    answer = net::Transmit{from, said};
+    answer = net::Transmit{from, reply};
     return;
   }
   const Random random = random_of(wire);
@@ -247,7 +247,7 @@ void Server::Impl::step(std::uint64_t now, Peer& peer) {
   if (stage == Association::Stage::broken) return;
   if (peer.link->is_key_wrong() && now >= peer.alerted_at + kRepeatEvery) {
     peer.alerted_at = now;
-    return say(peer.at, peer.link->alert(kDecryptError, sealed));
+    return send(peer.at, peer.link->alert(kDecryptError, sealed));
   }
   if (peer.link->has_spoken() || (!peer.link->flight().empty() && now >= peer.spoke_at + kRepeatEvery)) speak(now, peer);
 }
@@ -256,7 +256,7 @@ void Server::Impl::step(std::uint64_t now, Peer& peer) {
 void Server::Impl::settle(std::uint64_t now, std::unique_ptr<Peer> peer) {
   if (const auto old = find(peers, peer->at); old != peers.end()) peers.erase(old);  // its session may go on, by another name
   if (peers.size() >= options.peers) {
-    say(peer->at, peer->link->close());
+    send(peer->at, peer->link->close());
     return;
   }
   ++counters.handshakes;
@@ -281,7 +281,7 @@ std::vector<std::uint64_t> Server::replace(KeyList keys) {
     if (is_gone(peer)) out.push_back(peer->id);
   for (int i = 0; i < kRepetitions; ++i)
     for (const auto& peer : in.peers)
-      if (is_gone(peer)) in.say(peer->at, peer->link->alert(kAccessDenied, in.sealed));
+      if (is_gone(peer)) in.send(peer->at, peer->link->alert(kAccessDenied, in.sealed));
   std::erase_if(in.peers, is_gone);
   std::erase_if(in.shaking, is_gone);
   in.context->replace(std::move(keys));
@@ -312,7 +312,7 @@ void Server::keep_only(std::uint64_t now, const std::function<bool(std::uint64_t
   for (std::size_t i = in.peers.size(); i-- > 0;) {
     Peer& peer = *in.peers[i];
     if (now < peer.began + kPatience || is_needed(peer.id)) continue;
-    in.say(peer.at, peer.link->close());
+    in.send(peer.at, peer.link->close());
     in.forget(peer.id);
   }
 }
@@ -320,7 +320,7 @@ void Server::keep_only(std::uint64_t now, const std::function<bool(std::uint64_t
 void Server::close() noexcept try {
   Impl& in = *impl_;
   for (const auto& peer : in.peers) {
-    in.say(peer->at, peer->link->close());
+    in.send(peer->at, peer->link->close());
     in.closed.push_back(peer->id);
   }
   in.peers.clear();

@@ -28,7 +28,7 @@ struct ServerOptions {
   Limits limits{};
 };
 
-/// Threads: one at a time. Of an address that has not proven itself nothing is kept, not even in part.
+/// Threads: one at a time. Of an address that is not validated nothing is kept, not even in part.
 class Server {
  public:
   /// in   keys  of the users; a key alone is a list, too   err  internal R-SEA-6

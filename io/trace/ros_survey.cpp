@@ -21,7 +21,7 @@ constexpr double kLeastGap = 0.1, kMostGap = 10, kGapsOfMedian = 3;  // [s], [s]
 constexpr double kSlow = 10;                                         // [1/s]
 constexpr double kStray = 60, kOtherEpoch = 3e7;                     // [s] between log times that do not belong together
 constexpr std::size_t kMostStrays = 4096;
-constexpr double kSwing = 1e-3;  // [m] shortest way to and fro between places
+constexpr double kSwing = 1e-3;  // [m] shortest path to and fro between places
 
 std::string text(double value, const char* format = "%.6g") {
   std::array<char, 40> out{};

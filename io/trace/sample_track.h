@@ -177,9 +177,9 @@ template <class Time>
 Pose SampleTrack<Time>::pose() noexcept {
   Pose pose = value().pose;
   if (place_ != Place::between || !is_sparse(at_)) return pose;
-  const SampleCurve& way = curve();
-  pose.position = pose.position + way.linear.off(way.span, fraction_);
-  if (way.angular.bend != Vec3{}) pose.rotation = rotation_of(way.angular.off(way.span, fraction_)) * pose.rotation;
+  const SampleCurve& motion = curve();
+  pose.position = pose.position + motion.linear.off(motion.span, fraction_);
+  if (motion.angular.bend != Vec3{}) pose.rotation = rotation_of(motion.angular.off(motion.span, fraction_)) * pose.rotation;
   return pose;
 }
 
@@ -188,9 +188,9 @@ RigidSample SampleTrack<Time>::moving(double seconds) noexcept {
   if (!is_known()) return value();
   RigidSample value{pose(), {}, {}};
   if (is_sparse(at_)) {
-    const SampleCurve& way = curve();
-    value.velocity = (1 / seconds) * way.linear.velocity(way.span, fraction_);
-    value.angular_velocity = (1 / seconds) * way.angular.velocity(way.span, fraction_);
+    const SampleCurve& motion = curve();
+    value.velocity = (1 / seconds) * motion.linear.velocity(motion.span, fraction_);
+    value.angular_velocity = (1 / seconds) * motion.angular.velocity(motion.span, fraction_);
     return value;
   }
   if (!has_slopes_) {
@@ -238,12 +238,12 @@ const SampleCurve& SampleTrack<Time>::curve() noexcept {
     return motion_between(samples_[a].value.pose, samples_[b].value.pose, time(a, b));
   };
   const std::size_t first = before(at_), last = after(at_ + 1);
-  const Twist way = chord(at_, at_ + 1);
-  curve_ = {{way.linear, {}, {}}, {way.angular, {}, {}}, time(at_, at_ + 1)};
+  const Twist motion = chord(at_, at_ + 1);
+  curve_ = {{motion.linear, {}, {}}, {motion.angular, {}, {}}, time(at_, at_ + 1)};
   if (first != at_ && last != at_ + 1) {
     const Twist from = chord(first, at_), to = chord(at_ + 1, last);
-    curve_.linear = SampleCurve::part(from.linear, way.linear, to.linear, time(first, at_), curve_.span, time(at_ + 1, last));
-    curve_.angular = SampleCurve::part(from.angular, way.angular, to.angular, time(first, at_), curve_.span, time(at_ + 1, last));
+    curve_.linear = SampleCurve::part(from.linear, motion.linear, to.linear, time(first, at_), curve_.span, time(at_ + 1, last));
+    curve_.angular = SampleCurve::part(from.angular, motion.angular, to.angular, time(first, at_), curve_.span, time(at_ + 1, last));
   }
   has_curve_ = true;
   return curve_;

@@ -12,7 +12,7 @@ HEAD = ["round_trip_s", "rate_bit_per_s", "loss", "queue_s", "sealed", "declarat
 
 def parser(what):
     made = arguments.parser("bench join", what, "Example:\n  tactus bench join -o join")
-    made.add_argument("--sealed", action="store_true", help="As with the seal, but for its handshake: addresses are proven, 29 bytes more")
+    made.add_argument("--sealed", action="store_true", help="As with the seal, but for its handshake: addresses are validated, 29 bytes more")
     made.add_argument("--side", default=316, type=arguments.whole(2, 1000), metavar="N",
                       help="Vertices along the side of the sheet that is declared [316: 1.3 MB]")
     made.add_argument("--seed", default=1, type=arguments.whole(0, 2**64 - 1), metavar="N", help="Seed of the losses [1]")

@@ -115,22 +115,22 @@ def cells(motion, case):
 def remarks(case):
     """What else there is to say of a case."""
     out = f"; recovered {1e3 * case['recovery_s']:.0f} ms after it" if case.get("recovery_s") else ""
-    widened = case["bounds_widened"]
-    if widened["for_s"] > 0:
-        fraction = 100 * per(widened["for_s"], case["seconds"])
-        out += f"; bounds up to {widened['widest']:.1f} times as wide for {fraction:.0f} % of the time"
+    scaling = case["bound_scale"]
+    if scaling["for_s"] > 0:
+        fraction = 100 * per(scaling["for_s"], case["seconds"])
+        out += f"; bounds up to {scaling['largest']:.1f} times as wide for {fraction:.0f} % of the time"
     return out
 
 
 def csv_rows(motions):
     def row(motion, case):
-        broken, down, widened = case["ticks_over"], case["down_bit_per_s"], case["bounds_widened"]
+        broken, down, scaling = case["ticks_over"], case["down_bit_per_s"], case["bound_scale"]
         rates = [down["payload"], motion["chain_payload_bit_per_s"], down["session"], down["udp_ipv4"], case["up_bit_per_s"]]
         times = [case["longest_run_s"], case["mean_run_s"], case["shown_behind_s"]]
         return [motion["name"], case["group"], case["case"], case["ticks"],
                 *(broken[key] for key in ("any", "position", "rotation", "force", "shape")), *(f"{value:.6g}"
                     for value in times + rates),
-                f"{case.get('recovery_s', 0):.6g}", f"{widened['widest']:.4g}", f"{widened['for_s']:.6g}", case["wrong_states"],
+                f"{case.get('recovery_s', 0):.6g}", f"{scaling['largest']:.4g}", f"{scaling['for_s']:.6g}", case["wrong_states"],
                 *(f"{case['error_bounds'][key]:.4g}" for key in ("median", "p95", "worst"))]
     return [row(motion, case) for motion in motions for case in motion["results"]]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tactus bench signals TRACE...`: packets, payload and errors of each device and force of recordings, coded in several ways."""
+"""`tactus bench signals TRACE...`: packets, payload and errors of each device and force of recordings, with several codings."""
 import os
 
 from common import arguments, program

@@ -70,9 +70,9 @@ class Regions:
 
     def owners(self, positions, before, margin):
         """Who owned it before goes on until it is farther than the margin from the region."""
-        gone = self.distance(positions, before) > margin
+        departed = self.distance(positions, before) > margin
         out = before.copy()
-        out[gone] = self.of(positions[gone])
+        out[departed] = self.of(positions[departed])
         return out
 
 
@@ -182,12 +182,12 @@ class World:
         owner = self.regions.owners(self.objects, self.owner, self.setting.margin)
         held = moving[self.holder[moving] >= 0]
         owner[held] = server[self.holder[held]]
-        gone_users, gone_objects = server != self.server, owner != self.owner
+        departed_users, departed_objects = server != self.server, owner != self.owner
         self.server, self.owner = server, owner
         rests = numpy.ones(self.setting.objects, bool)
         rests[moving] = False
         self.holder[rests] = -1
-        return gone_users, int(gone_objects.sum())
+        return departed_users, int(departed_objects.sum())
 
     def step(self):
         """out  {what: mean of the step}, of users and servers as arrays"""
@@ -197,10 +197,10 @@ class World:
         self._stir(users, objects, distances, leaves)
         moving = self._move()
         levels, changed = self._look(users, objects, distances)
-        gone_users, gone_objects = self._own(moving)
-        return self._measure(users, objects, levels, changed, moving, gone_users, gone_objects)
+        departed_users, departed_objects = self._own(moving)
+        return self._measure(users, objects, levels, changed, moving, departed_users, departed_objects)
 
-    def _measure(self, users, objects, levels, changed, moving, gone_users, gone_objects):
+    def _measure(self, users, objects, levels, changed, moving, departed_users, departed_objects):
         setting, costs, each = self.setting, self.costs, self.setting.users
         moves = numpy.zeros(setting.objects, bool)
         moves[moving] = True
@@ -208,7 +208,7 @@ class World:
         lods = numpy.stack([numpy.bincount(users[sent & (levels == level)], minlength=each) for level in range(LODS)])
         members = numpy.bincount(users[levels < OUT], minlength=each)
         # Who comes to another server is sent all in its interest there.
-        changes = (numpy.bincount(users[changed], minlength=each) + numpy.where(gone_users, members, 0)) / TICKS
+        changes = (numpy.bincount(users[changed], minlength=each) + numpy.where(departed_users, members, 0)) / TICKS
         ghosts = self._ghosts(moving)
         packets = datagrams(costs["updates_per_s"] @ lods + 1000 * changes)
         load = self._load(moving, ghosts.sum(axis=0), lods.sum(axis=0), packets / 1000)
@@ -218,7 +218,7 @@ class World:
         between = ghosts * costs["bit_per_s"][0] + head * datagrams(ghosts * costs["updates_per_s"][0])
         return {"load": load, "moving": len(moving), "members": members.mean(), "told": lods.sum(axis=0).mean(),
                 "changes": 1000 * changes.mean(), "down": down, "between": between.sum(), "ghosts": ghosts.sum(),
-                "hand_over_users": int(gone_users.sum()), "hand_over_objects": gone_objects,
+                "hand_over_users": int(departed_users.sum()), "hand_over_objects": departed_objects,
                 "clients": int(numpy.bincount(self.server, minlength=setting.servers).max())}
 
     def _load(self, moving, ghosts, sent, packets):

@@ -48,7 +48,7 @@ class Line {
     SessionServerOptions options;
     options.clients = 2;
     options.rate = of.limit;
-    options.addresses_are_proven = of.sealed;
+    options.addresses_are_validated = of.sealed;
     options.sender.triggers = {.visual_position = 6e-3, .haptic = HapticRule::off};
     TACTUS_TRY(auto server, SessionServer::create(std::move(scene), options, of.seed, kStart));
     Line out(std::move(server));

@@ -16,7 +16,7 @@ struct JoinCase {
   std::int64_t jitter = 0;           ///< [us] of every datagram, uniform within 0 and this
   std::int64_t queue = 100'000;      ///< [us] that the bottleneck holds
   std::uint64_t limit = 0;           ///< [bit/s] that the server's user states for each client; 0: none
-  bool sealed = false;  ///< addresses are proven, and datagrams as long as sealed ones; the seal's handshake is not counted
+  bool sealed = false;  ///< addresses are validated, and datagrams as long as sealed ones; the seal's handshake is not counted
   std::uint64_t seed = 1;
 };
 

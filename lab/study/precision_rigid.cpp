@@ -102,10 +102,10 @@ double pair(const RigidEffort& effort, double& seconds) { return sinking(2, 1e3,
 constexpr std::array kMotions{
     RigidMotion{"free-rotation", "a free box at 50 rad/s about its middle axis, attitude after 1 s", "rad", free_rotation},
     RigidMotion{"tipping", "a box tips over an edge, attitude after 0.12 s", "rad", tipping},
-    RigidMotion{"slide", "a plate slides from 1 m/s until it rests, way", "m", slide},
+    RigidMotion{"slide", "a plate slides from 1 m/s until it rests, distance", "m", slide},
     RigidMotion{"landing", "a cube falls 0.2 m, height 60 ms after it met the floor", "m", bounce_free_landing},
-    RigidMotion{"stack", "ten cubes, way of the top one in 2 s", "m", stack},
-    RigidMotion{"pair", "a cube on a cube of a thousandth of its mass, way of the top one in 2 s", "m", pair}};
+    RigidMotion{"stack", "ten cubes, displacement of the top one in 2 s", "m", stack},
+    RigidMotion{"pair", "a cube on a cube of a thousandth of its mass, displacement of the top one in 2 s", "m", pair}};
 
 }  // namespace
 

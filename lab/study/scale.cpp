@@ -99,12 +99,12 @@ class Motions {
   std::vector<std::uint32_t> moved_;
 };
 
-class Way {
+class DelayLine {
  public:
-  Way(const ScaleCase& of, std::uint64_t seed) : random_(seed), loss_(of.loss), way_(of.way) {}
+  DelayLine(const ScaleCase& of, std::uint64_t seed) : random_(seed), loss_(of.loss), delay_(of.delay) {}
   void send(std::uint64_t now, std::span<const std::uint8_t> bytes) {
     if (loss_ > 0 && random_.uniform(0, 1) < loss_) return;
-    on_it_.emplace_back(now + way_, Bytes(bytes.begin(), bytes.end()));
+    on_it_.emplace_back(now + delay_, Bytes(bytes.begin(), bytes.end()));
   }
   std::optional<Bytes> poll(std::uint64_t now) {
     if (on_it_.empty() || on_it_.front().first > now) return std::nullopt;
@@ -116,7 +116,7 @@ class Way {
  private:
   Random random_;
   double loss_;
-  std::uint64_t way_;
+  std::uint64_t delay_;
   std::deque<std::pair<std::uint64_t, Bytes>> on_it_;
 };
 
@@ -201,7 +201,7 @@ class World {
   static constexpr std::uint64_t kStart = 1'000'000;
   struct User {
     SessionClient client;
-    Way up, down;
+    DelayLine up, down;
   };
 
   World(const ScaleCase& of, SessionServer server)
@@ -221,9 +221,9 @@ class World {
   Result<void> join() {
     for (std::uint64_t number = 0; number < of_.clients; ++number) {
       TACTUS_TRY(auto client, SessionClient::create({.role = of_.role, .limits = kLimits}));
-      users_.push_back({std::move(client), Way(of_, 1000 + 2 * number + of_.seed), Way(of_, 1001 + 2 * number + of_.seed)});
+      users_.push_back({std::move(client), DelayLine(of_, 1000 + 2 * number + of_.seed), DelayLine(of_, 1001 + 2 * number + of_.seed)});
       User& user = users_.back();
-      if (of_.reach > 0) user.client.look_from(eyes(number));
+      if (of_.reach > 0) user.client.set_viewpoint(eyes(number));
       user.client.open(now_, number + 1);
       for (int k = 0; k < 60'000 && server_.status(static_cast<std::uint16_t>(number)).state != SessionState::live; ++k) {
         while (const auto datagram = user.client.poll_datagram(now_)) hear(number + 1, *datagram);
@@ -277,7 +277,7 @@ class World {
       ++datagrams_, bytes_ += sent.bytes.size();
     }
     for (User& user : users_) {
-      if (of_.reach > 0) user.client.look_from(eyes(static_cast<std::size_t>(&user - users_.data())));
+      if (of_.reach > 0) user.client.set_viewpoint(eyes(static_cast<std::size_t>(&user - users_.data())));
       while (const auto bytes = user.down.poll(now_)) static_cast<void>(user.client.handle_datagram(now_, *bytes));
       user.client.handle_timeout(now_);
       while (const auto datagram = user.client.poll_datagram(now_)) user.up.send(now_, *datagram);

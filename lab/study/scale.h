@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a server of many clients and objects costs: sessions in virtual time, each client a little way off, of which only the server's
+/// What a server of many clients and objects costs: sessions in virtual time, each client some milliseconds off, of which only the server's
 /// calls are timed.
 #pragma once
 
@@ -16,7 +16,7 @@ struct ScaleCase {
   std::int64_t ticks = 1000;                  ///< that are measured, after two seconds
   std::uint64_t seed = 1;
   double loss = 0;             ///< fraction of datagrams, each way
-  std::uint64_t way = 10'000;  ///< [us]
+  std::uint64_t delay = 10'000;  ///< [us]
   Role role = Role::observer;
   bool names_moved = false;  ///< the server is given the objects that have moved
   bool spread =

@@ -91,7 +91,7 @@ class Judge {
     last_ = shown;
     behind_ += frame.tick - shown;
     ++looks_;
-    widening_ += network.server().status(0).widening;
+    bound_scale_ += network.server().status(0).bound_scale;
     Replica& replica = client.receiver()->replica();
     const std::uint64_t shapes_before = judged_shapes(), before = broken();
     for (PlayedShapes& shapes : shapes_) shapes.look(replica, shown);
@@ -110,7 +110,7 @@ class Judge {
     result_.force = errors_.force().ticks_over();
     result_.longest = tick * static_cast<double>(longest_);
     result_.mean = runs_ == 0 ? 0 : tick * static_cast<double>(run_time_) / static_cast<double>(runs_);
-    result_.mean_widening = looks_ == 0 ? 1 : widening_ / static_cast<double>(looks_);
+    result_.mean_bound_scale = looks_ == 0 ? 1 : bound_scale_ / static_cast<double>(looks_);
     result_.error_median = quantile(worst_, 0.5);
     result_.error_p95 = quantile(worst_, 0.95);
     result_.worst = quantile(worst_, 1);
@@ -176,7 +176,7 @@ class Judge {
   std::vector<PlayedShapes> shapes_;
   std::vector<Pose> shown_;
   std::vector<double> worst_;  // [bounds] of each tick
-  double widening_ = 0;        // sum
+  double bound_scale_ = 0;        // sum
   std::int64_t last_ = -1, behind_ = 0, looks_ = 0;
   std::int64_t run_begin_ = -1, longest_ = 0, run_time_ = 0, runs_ = 0;  // [ticks]; -1: in no run
 };
@@ -257,7 +257,7 @@ Result<SessionResult> run_session(const Motion& motion, const SessionCase& one) 
   result.seconds = static_cast<double>(motion.frames.size()) / motion.info.tick_rate;
   result.down = network->sent_to(0);
   result.up = network->sent_by(0);
-  result.widened = network->server().status(0).widened;
+  result.bound_scaling = network->server().status(0).bound_scaling;
   result.server_time = median(coding);
   return result;
 }

@@ -20,7 +20,7 @@ constexpr double kFractions[]{0.02, 0.04, 0.08, 0.12, 0.2};  // p
 constexpr std::uint64_t kTimed = 4;                          // each such sample is timed
 constexpr double kHalfDiagonal = std::numbers::sqrt3 / 2;    // of a cell of the grid: what rounding may cost
 
-/// Counts and errors of one way to code.
+/// Counts and errors of one coding.
 struct Tally {
   SignalResult result;
   double square = 0;

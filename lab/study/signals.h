@@ -19,7 +19,7 @@ enum class Signal : std::uint8_t {
   force,    ///< [N] under a deadband
 };
 
-/// One way to code the signal of one user.
+/// One coding of the signal of one user.
 struct SignalResult {
   std::size_t user = 0;
   Signal signal = Signal::device;
@@ -31,7 +31,7 @@ struct SignalResult {
   double time = 0;              ///< [s] median: one sample at the sender
 };
 
-/// All users of a recording, each coded in every way. Samples are not kept.
+/// All users of a recording, each with every coding. Samples are not kept.
 class SignalStudy {
  public:
   /// Acknowledgements of a device come so much later, [s].

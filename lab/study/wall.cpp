@@ -10,7 +10,7 @@ namespace tactus::sim::study {
 namespace {
 
 constexpr double kStep = 1e-6;      // [m] per sample
-constexpr int kWay = 1000;          // samples into the wall
+constexpr int kDepth = 1000;          // samples into the wall
 constexpr int kReversals = 10'000;  // of the fast motion
 constexpr int kSamples = 100'000;   // of a device that was let go
 constexpr double kFar = 1e3;        // [m]
@@ -18,7 +18,7 @@ constexpr int kWindow = 1000;       // samples; motion that is larger in the las
 
 /// Penetration at sample n, from outside the wall and back there.
 double penetration(Motion motion, int n) {
-  if (motion == Motion::slow) return kStep * (kWay - std::abs(n - kWay));
+  if (motion == Motion::slow) return kStep * (kDepth - std::abs(n - kDepth));
   if (n <= 0 || n >= 2 * kReversals) return 0;
   return n % 2 == 0 ? kStep : 2 * kStep;
 }
@@ -27,7 +27,7 @@ double penetration(Motion motion, int n) {
 
 bool is_passive(const Wall& wall, double device_damping, double period, Motion motion) {
   PassivityObserver port;
-  const int samples = motion == Motion::slow ? 2 * kWay : 2 * kReversals;
+  const int samples = motion == Motion::slow ? 2 * kDepth : 2 * kReversals;
   double before = 0;
   for (int n = 0; n <= samples; ++n) {
     const double p = penetration(motion, n), next = penetration(motion, n + 1);

@@ -15,7 +15,7 @@ struct Wall {
 
 /// How a hand that yields to nothing moves the device. Both are straight between samples: of all motions through the same samples
 /// these lose least energy in the device's damper, so the limit found holds for every hand.
-///   slow  in by a thousandth of the way per sample, and out again
+///   slow  in by a thousandth of the depth per sample, and out again
 ///   fast  to and fro at every sample, at half the sampling rate
 enum class Motion : std::uint8_t { slow, fast };
 

@@ -91,11 +91,11 @@ def adjusted(options):
     found = over_seeds(options, requests)
     rows = [(setting, found[2 * i], found[2 * i + 1]) for i, setting in enumerate(ADJUSTED)]
     report = head(options, "fig3.10") | {"faster_hand": {"pace": options.pace, "tremor_m": options.tremor}, "rows": [
-        {"scene": scene, "interpolation": with_or_without(way), "deadband": p, "thesis_packets_per_s": thesis,
-         "states": summary(slow), "states_faster_hand": summary(fast)} for (scene, way, p, thesis), slow, fast in rows]}
-    cells = [[scene, with_or_without(way), f"{100 * p:.1f} %"] + [plus_minus(of["packets_per_s_in_contact"]) for of in (slow, fast)]
+        {"scene": scene, "interpolation": with_or_without(interpolation), "deadband": p, "thesis_packets_per_s": thesis,
+         "states": summary(slow), "states_faster_hand": summary(fast)} for (scene, interpolation, p, thesis), slow, fast in rows]}
+    cells = [[scene, with_or_without(interpolation), f"{100 * p:.1f} %"] + [plus_minus(of["packets_per_s_in_contact"]) for of in (slow, fast)]
              + [f"{thesis:g}"] + [f"{mean(of['packets_per_s_in_contact']) / thesis:.2f}" for of in (slow, fast)]
-             for (scene, way, p, thesis), slow, fast in rows]
+             for (scene, interpolation, p, thesis), slow, fast in rows]
     text = lines("Thesis figure 3.10: updates per second in contact, at the deadbands that its subjects chose, "
                  f"seeds 1 to {options.seeds}", about_faster_hand(options), "", table.aligned(
                      ["experiment", "interpolation", "p", "updates/s in contact", "faster hand", "thesis", "over thesis", "faster hand"],
@@ -103,12 +103,12 @@ def adjusted(options):
     return Made(report, text, lambda: draw_adjusted(rows), {})
 
 
-def with_or_without(way):
-    return "without" if way == "none" else "with"
+def with_or_without(interpolation):
+    return "without" if interpolation == "none" else "with"
 
 
 def draw_adjusted(rows):
-    names = [f"{scene}, p = {100 * p:g} %\n{with_or_without(way)} interpolation" for (scene, way, p, _), *_ in rows]
+    names = [f"{scene}, p = {100 * p:g} %\n{with_or_without(interpolation)} interpolation" for (scene, interpolation, p, _), *_ in rows]
     groups = [(label, [of["packets_per_s_in_contact"] for of in column])
               for label, column in (("the scene's hand", [r[1] for r in rows]), ("a faster hand", [r[2] for r in rows]))]
     fig, axes = bars(names, groups, [setting[3] for setting, *_ in rows])

@@ -167,10 +167,10 @@ std::optional<SurfacePoint> AabbTree::closest(const Vec3& point, std::span<const
 }
 
 /// Test the separating axes of segment and box grown by the radius; in doubt they are near.
-bool AabbTree::near_segment(const Box& box, const Vec3& from, const Vec3& way, double radius) noexcept {
+bool AabbTree::near_segment(const Box& box, const Vec3& from, const Vec3& displacement, double radius) noexcept {
   const auto half = [&](std::size_t axis) { return 0.5 * (double{box.high[axis]} - box.low[axis]) + radius; };
   const auto centre = [&](std::size_t axis) { return 0.5 * (double{box.high[axis]} + box.low[axis]); };
-  const Vec3 h = 0.5 * way, m{from.x + h.x - centre(0), from.y + h.y - centre(1), from.z + h.z - centre(2)};
+  const Vec3 h = 0.5 * displacement, m{from.x + h.x - centre(0), from.y + h.y - centre(1), from.z + h.z - centre(2)};
   const Vec3 a{std::abs(h.x), std::abs(h.y), std::abs(h.z)}, e{half(0), half(1), half(2)};
   const double rounding = 1e-15 * (std::abs(from.x) + std::abs(from.y) + std::abs(from.z) + a.x + a.y + a.z);
   if (std::abs(m.x) > e.x + a.x + rounding || std::abs(m.y) > e.y + a.y + rounding || std::abs(m.z) > e.z + a.z + rounding) {
@@ -186,23 +186,23 @@ bool AabbTree::near_segment(const Box& box, const Vec3& from, const Vec3& way, d
 
 /// Call test(leaf) for every triangle near the part of the path that still matters. It returns the fraction that matters from then on.
 template <class Test>
-void AabbTree::along(const Vec3& from, const Vec3& way, double radius, Test&& test) const noexcept {
+void AabbTree::along(const Vec3& from, const Vec3& displacement, double radius, Test&& test) const noexcept {
   if (nodes_.empty()) return;
   std::array<std::uint32_t, kMaxDepth> stack;
   std::size_t depth = 0;
   stack[depth++] = 0;
-  Vec3 rest = way;
+  Vec3 rest = displacement;
   while (depth > 0) {
     const std::uint32_t index = stack[--depth];
     const Node& node = nodes_[index];
     if (!near_segment(node.box, from, rest, radius)) continue;
     if (node.count != 0) {
-      for (const Leaf& leaf : std::span(leaves_).subspan(node.next, node.count)) rest = test(leaf) * way;
+      for (const Leaf& leaf : std::span(leaves_).subspan(node.next, node.count)) rest = test(leaf) * displacement;
       continue;
     }
     const Box &a = nodes_[index + 1].box, &b = nodes_[node.next].box;
     const auto lead = [&](std::size_t axis) { return double{b.low[axis]} + b.high[axis] - a.low[axis] - a.high[axis]; };
-    const bool a_first = lead(0) * way.x + lead(1) * way.y + lead(2) * way.z >= 0;
+    const bool a_first = lead(0) * displacement.x + lead(1) * displacement.y + lead(2) * displacement.z >= 0;
     stack[depth++] = a_first ? node.next : index + 1;
     stack[depth++] = a_first ? index + 1 : node.next;
   }
@@ -211,7 +211,7 @@ void AabbTree::along(const Vec3& from, const Vec3& way, double radius, Test&& te
 std::optional<SurfaceHit> AabbTree::sweep(const Sweep& sphere, std::span<const Vec3> vertices,
                                           std::span<const std::uint32_t> left_out) const noexcept {
   std::optional<SurfaceHit> first;
-  along(sphere.from, sphere.way, sphere.radius + sphere.slack, [&](const Leaf& leaf) {
+  along(sphere.from, sphere.displacement, sphere.radius + sphere.slack, [&](const Leaf& leaf) {
     const double limit = first ? first->t : 1.0;
     if (std::find(left_out.begin(), left_out.end(), leaf.triangle) != left_out.end()) return limit;
     const auto hit = sphere_hits_triangle(sphere, corners(leaf, vertices), limit);

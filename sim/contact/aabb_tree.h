@@ -40,8 +40,8 @@ struct SurfacePoint {
 
 /// Where a segment or a moving sphere first meets the mesh.
 struct SurfaceHit {
-  double t = 0;     ///< fraction of the way, 0..1
-  double rest = 0;  ///< fraction of the way, 0..t, up to which a sphere keeps its slack
+  double t = 0;     ///< fraction of the path, 0..1
+  double rest = 0;  ///< fraction of the path, 0..t, up to which a sphere keeps its slack
   SurfacePoint at;  ///< point met; its distance is to the sphere's centre at that time
 };
 
@@ -68,7 +68,7 @@ class AabbTree {
   /// Closest point of the mesh that is no further than `within` [m].   time O(log n) near the surface, no allocation
   std::optional<SurfacePoint> closest(const Vec3& point, std::span<const Vec3> vertices,
                                       double within = std::numeric_limits<double>::infinity()) const noexcept;
-  /// First contact of a moving sphere with any triangle but those left out.   time O(log n + triangles near the way), no allocation
+  /// First contact of a moving sphere with any triangle but those left out.   time O(log n + triangles near the path), no allocation
   std::optional<SurfaceHit> sweep(const Sweep& sphere, std::span<const Vec3> vertices,
                                   std::span<const std::uint32_t> left_out = {}) const noexcept;
   /// The same with one triangle of the tree.
@@ -79,7 +79,7 @@ class AabbTree {
 
   /// True if a moving sphere stays outside of the box around all triangles.   time O(1)
   bool is_far(const Sweep& sphere) const noexcept {
-    return nodes_.empty() || !near_segment(nodes_[0].box, sphere.from, sphere.way, sphere.radius + sphere.slack);
+    return nodes_.empty() || !near_segment(nodes_[0].box, sphere.from, sphere.displacement, sphere.radius + sphere.slack);
   }
   bool contains(std::uint32_t triangle) const noexcept { return triangle < leaf_of_.size() && leaf_of_[triangle] != kAbsent; }
   std::size_t size() const noexcept { return leaves_.size(); }
@@ -116,9 +116,9 @@ class AabbTree {
   /// Call visit(node) for every leaf that reaches into a sphere. Stops and returns false as soon as visit() does.
   template <class Visit>
   bool visit_boxes(const Vec3& centre, double radius, Visit&& visit) const;
-  static bool near_segment(const Box& box, const Vec3& from, const Vec3& way, double radius) noexcept;
+  static bool near_segment(const Box& box, const Vec3& from, const Vec3& displacement, double radius) noexcept;
   template <class Test>
-  void along(const Vec3& from, const Vec3& way, double radius, Test&& test) const noexcept;
+  void along(const Vec3& from, const Vec3& displacement, double radius, Test&& test) const noexcept;
 
   std::vector<Node> nodes_;  // parents before children
   std::vector<Leaf> leaves_;

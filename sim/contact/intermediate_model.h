@@ -7,7 +7,7 @@
 /// cut-out where it was shown, any other at the result of the previous step. Triangles and vertices keep their numbers in the
 /// mesh, so that the proxy passes from cut-out to cut-out unchanged.
 ///
-/// A proxy that is about to leave the outermost ring below the surface moves only part of the way, or waits, until the next
+/// A proxy that is about to leave the outermost ring below the surface moves only a part of its displacement, or waits, until the next
 /// cut-out is centred on it.
 #pragma once
 

@@ -54,7 +54,7 @@ MeshProxy::MeshProxy(const MeshProxyOptions& options, double extent) noexcept
 Sweep MeshProxy::towards(const Vec3& goal) const noexcept { return {centre_, goal - centre_, distance(), slack_}; }
 
 /// Motion below the slack is ignored, so that a held proxy does not creep.
-bool MeshProxy::lets_move(const SurfaceHit& hit, const Vec3& way) const noexcept { return hit.rest * norm(way) > slack_; }
+bool MeshProxy::lets_move(const SurfaceHit& hit, const Vec3& displacement) const noexcept { return hit.rest * norm(displacement) > slack_; }
 
 /// Test the triangles that held the proxy last first. One that allows no motion decides, unless a point meets it at an edge: the face
 /// beside the edge may be what carries the point.
@@ -69,7 +69,7 @@ std::optional<SurfaceHit> MeshProxy::first_contact(const Vec3& goal, const AabbT
     *asked_end++ = triangle;
     const auto hit = around.sweep_one(sweep, triangle);
     if (!hit) continue;
-    if (!lets_move(*hit, sweep.way) && (hit->at.feature() == Feature::face || options_.radius > 0)) return hit;
+    if (!lets_move(*hit, sweep.displacement) && (hit->at.feature() == Feature::face || options_.radius > 0)) return hit;
     if (earlier(*hit, first)) first = hit;
   }
   const auto hit = around.sweep(sweep, std::span(asked.begin(), asked_end), first ? first->t : 1);
@@ -131,14 +131,14 @@ void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const 
     }
     const bool settled = held_ > 0 && norm(*goal - centre_) <= settled_;
     if (!settled) {
-      const Vec3 from = centre_, way = *goal - centre_;
+      const Vec3 from = centre_, displacement = *goal - centre_;
       const auto hit = first_contact(*goal, tree, around);
       ++sweeps;
       if (!hit) centre_ = *goal;
-      else if (lets_move(*hit, way)) centre_ = from + hit->rest * way;
+      else if (lets_move(*hit, displacement)) centre_ = from + hit->rest * displacement;
       moved = moved || centre_ != from;
       if (hit) {
-        hold({hit->at, away_from(hit->at, from + hit->t * way, vertices, tree)});
+        hold({hit->at, away_from(hit->at, from + hit->t * displacement, vertices, tree)});
         continue;
       }
       if (held_ == 0) return;

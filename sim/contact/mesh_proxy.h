@@ -2,7 +2,7 @@
 /// Haptic rendering of triangle meshes: virtual proxy (god object) with friction cone. Thesis 2.3.4.1, figure 2.6.
 ///
 /// The proxy is a sphere that moves towards the probe as far as the mesh lets it, never through a triangle:
-///   1. It sweeps along the straight line to its goal; the first triangle in its way stops it and adds a plane.
+///   1. It sweeps along the straight line to its goal; the first triangle that it meets stops it and adds a plane.
 ///   2. The goal is the point nearest to the probe above the planes met so far: one holds it on a face, two in a groove, three in
 ///      a corner (constraints.h). A triangle is convex, so it cannot be crossed by a proxy that stays above its plane.
 ///   3. Friction: D is the sum of the depths below the active planes. Within mu D of the goal the proxy stays (static friction),
@@ -86,7 +86,7 @@ class MeshProxy {
 
   double distance() const noexcept { return options_.radius + skin_; }
   Sweep towards(const Vec3& goal) const noexcept;
-  bool lets_move(const SurfaceHit& hit, const Vec3& way) const noexcept;
+  bool lets_move(const SurfaceHit& hit, const Vec3& displacement) const noexcept;
   std::optional<SurfaceHit> first_contact(const Vec3& goal, const AabbTree& tree, TriangleCache& around) const noexcept;
   std::optional<Vec3> wanted(const Vec3& probe) noexcept;
   void hold(const Plane& plane) noexcept;

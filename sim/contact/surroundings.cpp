@@ -43,11 +43,11 @@ class Search {
     const Vec3 a = cross(n(j), n(k)), b = cross(n(k), n(i)), c = cross(n(i), n(j));
     const double volume = dot(n(i), a);
     if (volume * volume < kParallel) return std::nullopt;
-    const Vec3 way = (1 / volume) * (missing_[i] * a + missing_[j] * b + missing_[k] * c);
-    Constrained out{goal_ + way, {}};
-    out.lambda[i] = dot(way, a) / volume;
-    out.lambda[j] = dot(way, b) / volume;
-    out.lambda[k] = dot(way, c) / volume;
+    const Vec3 displacement = (1 / volume) * (missing_[i] * a + missing_[j] * b + missing_[k] * c);
+    Constrained out{goal_ + displacement, {}};
+    out.lambda[i] = dot(displacement, a) / volume;
+    out.lambda[j] = dot(displacement, b) / volume;
+    out.lambda[k] = dot(displacement, c) / volume;
     return accepted(out);
   }
 
@@ -96,7 +96,7 @@ TriangleCache::Plane TriangleCache::plane_before(const Vec3& n, const Corners& v
 bool TriangleCache::clears(const Plane& plane, const Sweep& sphere, double limit) noexcept {
   const double contact = sphere.radius + 0.5 * sphere.slack;
   const double start = plane.x * sphere.from.x + plane.y * sphere.from.y + plane.z * sphere.from.z - plane.offset;
-  const double end = start + limit * (plane.x * sphere.way.x + plane.y * sphere.way.y + plane.z * sphere.way.z);
+  const double end = start + limit * (plane.x * sphere.displacement.x + plane.y * sphere.displacement.y + plane.z * sphere.displacement.z);
   return std::min(start, end) > contact;
 }
 
@@ -144,21 +144,21 @@ bool TriangleCache::collect(const Vec3& centre, double reach, const Sweep& spher
 /// Fraction of the path that the cache covers.
 double TriangleCache::covered(const Sweep& sphere) const noexcept {
   const double left = reach_ - norm(sphere.from - centre_);
-  if (left >= 0 && norm(sphere.from + sphere.way - centre_) <= reach_) return 1;
-  return std::min(left / norm(sphere.way), 1.0);
+  if (left >= 0 && norm(sphere.from + sphere.displacement - centre_) <= reach_) return 1;
+  return std::min(left / norm(sphere.displacement), 1.0);
 }
 
 /// Rebuild the cache if it covers too little of the path. A short path is covered with a margin at both ends; of a long one only the
 /// start, as it usually stops early.
 /// out  fraction of the path that is covered, at most the limit
 double TriangleCache::cover(const Sweep& sphere, double limit) noexcept {
-  const double fraction = reach_ < 0 ? -1 : std::min(covered(sphere), limit), length = limit * norm(sphere.way);
+  const double fraction = reach_ < 0 ? -1 : std::min(covered(sphere), limit), length = limit * norm(sphere.displacement);
   if (fraction == limit) return limit;
   if (length < 2 * wanted_reach_) {
-    is_of_use_ = collect(sphere.from + (0.5 * limit) * sphere.way, 0.5 * (length + wanted_reach_), sphere);
+    is_of_use_ = collect(sphere.from + (0.5 * limit) * sphere.displacement, 0.5 * (length + wanted_reach_), sphere);
     return limit;
   }
-  if (fraction * norm(sphere.way) > 0.25 * wanted_reach_) return fraction;
+  if (fraction * norm(sphere.displacement) > 0.25 * wanted_reach_) return fraction;
   is_of_use_ = collect(sphere.from, wanted_reach_, sphere);
   return std::min(covered(sphere), limit);
 }

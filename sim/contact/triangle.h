@@ -3,7 +3,7 @@
 ///
 /// A triangle is convex, so its distance f(t) from a point that moves along a line is a convex function of t. Newton's method on
 /// f(t) = r therefore comes from the left and never passes the first contact of a moving sphere: no step is too long, however thin
-/// the triangle or grazing the way.
+/// the triangle or grazing the path.
 #pragma once
 
 #include <algorithm>
@@ -87,22 +87,22 @@ inline TrianglePoint closest_on_triangle(const Vec3& p, const Corners& v) noexce
 
 /// A moving sphere.
 struct Sweep {
-  Vec3 from, way;     ///< [m] start of the centre, and its displacement
+  Vec3 from, displacement;     ///< [m] start of the centre, and its displacement
   double radius = 0;  ///< [m] > 0
   double slack = 0;   ///< [m] > 0: distance from contact at which it is to come to rest
 };
 
 /// Where a moving sphere first touches a triangle.
 struct TriangleTouch {
-  double t = 0;  ///< fraction of the way, 0..1, of the contact; up to there the distance is never below the radius
+  double t = 0;  ///< fraction of the path, 0..1, of the contact; up to there the distance is never below the radius
   double rest =
-      0;  ///< fraction of the way, 0..t, up to which the distance is at least radius + slack (0: it is not even at the start)
+      0;  ///< fraction of the path, 0..t, up to which the distance is at least radius + slack (0: it is not even at the start)
   TrianglePoint at;  ///< point touched
 };
 
 /// A sphere that touches at the start, or reaches into the triangle, is stopped when it would come closer, and free to leave.
 /// in  limit    later contacts are ignored
-///     closest  point of the triangle to the start of the way
+///     closest  point of the triangle to the start of the path
 /// time one closest point if far or moving away, a few for a contact; after at most 32 the sphere stops short of contact
 [[gnu::always_inline]] inline std::optional<TriangleTouch> sphere_hits_triangle(const Sweep& sweep, const TriangleShape& triangle,
                                                                                 double limit,
@@ -115,12 +115,12 @@ struct TriangleTouch {
     const double distance = std::sqrt(touch.at.distance2), gap = distance - sweep.radius;
     const bool contact = gap <= kContact * sweep.slack;
     if (contact && step > 0) break;
-    const Vec3 away = sweep.from + touch.t * sweep.way - touch.at.point;
-    slope = distance > 0 ? dot(away, sweep.way) / distance : -norm(sweep.way);
+    const Vec3 away = sweep.from + touch.t * sweep.displacement - touch.at.point;
+    slope = distance > 0 ? dot(away, sweep.displacement) / distance : -norm(sweep.displacement);
     if (!(slope < 0) || touch.t - gap / slope > limit) return std::nullopt;
     if (contact) break;
     touch.t -= gap / slope;
-    touch.at = closest_on_triangle(sweep.from + touch.t * sweep.way, triangle);
+    touch.at = closest_on_triangle(sweep.from + touch.t * sweep.displacement, triangle);
   }
   touch.rest = std::fmax(0.0, touch.t + sweep.slack / slope);  // the last tangent lies below f here, too
   return touch;

@@ -128,8 +128,8 @@ void DeformableBody::move_surface() noexcept {
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const auto u = state_.u.segment<3>(3 * static_cast<Eigen::Index>(surface_.vertex[i]));
     next_vertices_[i] = surface_.mesh.vertices[i] + Vec3{u[0], u[1], u[2]};
-    const Vec3 way = next_vertices_[i] - vertices_[i];
-    farthest2 = std::max(farthest2, dot(way, way));
+    const Vec3 displacement = next_vertices_[i] - vertices_[i];
+    farthest2 = std::max(farthest2, dot(displacement, displacement));
   }
   reach_ = std::sqrt(farthest2);
 }

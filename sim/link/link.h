@@ -28,7 +28,7 @@ class Network {
  public:
   virtual ~Network() = default;
 
-  /// What clients and server say and hear until this tick, then the devices at the clients.
+  /// What clients and server send and hear until this tick, then the devices at the clients.
   /// in   devices, contacts  one per participant
   virtual Result<void> to_server(std::int64_t tick, std::span<const DeviceSample> devices,
                                  std::span<const std::optional<DeviceContact>> contacts) = 0;
@@ -87,7 +87,7 @@ struct Outage {
 struct LinkOptions {
   std::uint64_t seed = 1;
   Microseconds delay = 0;   ///< of every datagram
-  Microseconds jitter = 0;  ///< uniform within 0 and this, drawn for each datagram: overtaking happens
+  Microseconds jitter = 0;  ///< uniform within 0 and this, drawn for each datagram: they are reordered
 
   /// Gamma-distributed delay that keeps its value for a whole piece, so that datagrams of a piece keep their order (thesis 4.2.4.3).
   Microseconds gamma_mean = 0;
@@ -110,7 +110,7 @@ struct LinkCounters {
   std::uint64_t sent = 0, arrived = 0;              ///< copies count as arrived
   std::uint64_t lost = 0, cut = 0, overflowed = 0;  ///< by chance, by outages, by the queue
   std::uint64_t duplicated = 0;
-  std::uint64_t overtaken = 0;  ///< arrived after one that was sent later
+  std::uint64_t reordered = 0;  ///< arrived after one that was sent later
 };
 
 class Link {

@@ -139,7 +139,7 @@ void SessionNetwork::advance(std::uint64_t until) noexcept {
         if (link) next = std::min(next, links_since_ + static_cast<std::uint64_t>(*link));
     }
     if (next > until) break;
-    now_ = std::max(now_ + (next <= now_ ? 1 : 0), next);  // a timeout that is due and has nothing to say waits
+    now_ = std::max(now_ + (next <= now_ ? 1 : 0), next);  // a timeout that is due and has nothing to send waits
     if (now_ > until) break;
     deliver();
     drain();

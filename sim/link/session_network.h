@@ -67,7 +67,7 @@ class SessionNetwork final : public Network {
   /// Counters of the links since tick 0.
   const LinkCounters& uplink(std::size_t user) const noexcept { return users_[user].up->counters(); }
   const LinkCounters& downlink(std::size_t user) const noexcept { return users_[user].down->counters(); }
-  Widening widened(std::size_t user) const noexcept { return server_->status(users_[user].number).widened; }
+  BoundScaling bound_scaling(std::size_t user) const noexcept { return server_->status(users_[user].number).bound_scaling; }
   Traffic sent_to(std::size_t user) const noexcept;  ///< by the server, since tick 0
   Traffic sent_by(std::size_t user) const noexcept;  ///< by the client, since tick 0
 

@@ -46,8 +46,8 @@ void PastShapes::compare(double tick, double fraction) noexcept {
   while (before + 1 < ticks_.size() && static_cast<double>(tick_back(before)) > tick) ++before;
   const std::size_t after = before > 0 ? before - 1 : 0;
   // Between two shapes it moves; after a longer rest, in the last period of it.
-  const double way = std::clamp(1 - (static_cast<double>(tick_back(after)) - tick) / period_, 0.0, 1.0);
-  const auto part = static_cast<float>(way), taken = static_cast<float>(fraction);
+  const double progress = std::clamp(1 - (static_cast<double>(tick_back(after)) - tick) / period_, 0.0, 1.0);
+  const auto part = static_cast<float>(progress), taken = static_cast<float>(fraction);
   const float *a = back(before), *b = back(after);
   for (std::size_t i = 0; i < size_; ++i) {
     const float own = a[i] + part * (b[i] - a[i]);
@@ -205,21 +205,21 @@ void Prediction::show_heard() noexcept {
 void Prediction::move(std::uint32_t object, const Vec3& by, const Vec3& turn_by) noexcept {
   const Pose& own = own_->frame().objects[object].pose;
   poses_[object] = own;
-  const Vec3 way = along_free(by, free_[object], 0), turn = along_free(turn_by, free_[object], 3);
-  if (way == Vec3{} && turn == Vec3{}) return;
+  const Vec3 displacement = along_free(by, free_[object], 0), turn = along_free(turn_by, free_[object], 3);
+  if (displacement == Vec3{} && turn == Vec3{}) return;
   const Quat rotation = quaternion_of(turn);
   Pose& sum = corrections_[object];
-  sum = {sum.position + way, normalised(rotation * sum.rotation)};
-  poses_[object] = {own.position + way, normalised(rotation * own.rotation)};
+  sum = {sum.position + displacement, normalised(rotation * sum.rotation)};
+  poses_[object] = {own.position + displacement, normalised(rotation * own.rotation)};
   own_->rigid().place(object, poses_[object]);
 }
 
 void Prediction::correct_rigid(std::uint32_t object, std::int64_t then) noexcept {
   const Pose &sum = corrections_[object], &past = pasts_[object].at(then), &heard = heard_[object];
-  const Vec3 way = heard.position - (past.position + sum.position);
+  const Vec3 displacement = heard.position - (past.position + sum.position);
   const Vec3 turn = turn_of(heard.rotation * conjugate(sum.rotation * past.rotation));
-  const bool is_far = norm(way) > kFar || norm(turn) > kFarTurn;
-  move(object, is_far ? way : part(way, kClose), is_far ? turn : part(turn, kCloseTurn));
+  const bool is_far = norm(displacement) > kFar || norm(turn) > kFarTurn;
+  move(object, is_far ? displacement : part(displacement, kClose), is_far ? turn : part(turn, kCloseTurn));
 }
 
 /// The surface stays for a period, and server and own simulation begin theirs at different times: between two own places lies that which

@@ -14,16 +14,16 @@ namespace {
 
 constexpr double kSwept = 1e-4;     // [m] a pair that approaches by less in a tick is not swept
 constexpr double kClose = 1e-5;     // [m] apart: the place of a touch is known well enough
-constexpr double kMostLooks = 256;  // along the way of one tick
+constexpr double kMostLooks = 256;  // along the path of one tick
 
 }  // namespace
 
-/// With the way that it goes in this tick if nothing stops it.
+/// With the displacement of this tick if nothing stops it.
 Extent RigidWorld::Impl::bounds(std::uint32_t body) const {
   dReal box[6];
   dGeomGetAABB(bodies[body].geom, box);
   Extent out{{box[0], box[2], box[4]}, {box[1], box[3], box[5]}};
-  const Vec3 d = way(body);
+  const Vec3 d = displacement(body);
   (d.x < 0 ? out.low : out.high).x += d.x;
   (d.y < 0 ? out.low : out.high).y += d.y;
   (d.z < 0 ? out.low : out.high).z += d.z;
@@ -31,7 +31,7 @@ Extent RigidWorld::Impl::bounds(std::uint32_t body) const {
 }
 
 /// [m] of the next tick, as if nothing touched it; zero for one that hardly moves.
-Vec3 RigidWorld::Impl::way(std::uint32_t body) const {
+Vec3 RigidWorld::Impl::displacement(std::uint32_t body) const {
   if (body == kFloor || !bodies[body].handle || !bodies[body].awake) return {};
   const Vec3 d = h * vec(dBodyGetLinearVel(bodies[body].handle));
   return norm(d) < kSwept ? Vec3{} : d;
@@ -53,10 +53,10 @@ int RigidWorld::Impl::collide(dGeomID a, dGeomID b) {
   return on_mesh ? keep_outermost(std::span(found).first(static_cast<std::size_t>(count)), kMaxContacts) : count;
 }
 
-/// Contacts after a fraction of this tick's way, into `found`.
+/// Contacts after a fraction of this tick's displacement, into `found`.
 int RigidWorld::Impl::collide_at(const Pair& pair, double fraction) {
   const auto shift = [this](std::uint32_t body, double by) {
-    const Vec3 d = way(body);
+    const Vec3 d = displacement(body);
     if (d == Vec3{}) return;
     const Vec3 x = bodies[body].swept_from + by * d;
     dGeomSetPosition(bodies[body].geom, x.x, x.y, x.z);
@@ -80,13 +80,13 @@ double RigidWorld::Impl::smallest(std::uint32_t body) const {
 /// Two that do not touch yet, but do within this tick: they may come as near as they are, not nearer. Otherwise what is fast would pass
 /// what is thin, or be found deep inside, and thrown out.
 int RigidWorld::Impl::sweep(const Pair& pair) {
-  const Vec3 way_a = way(pair.a), way_b = way(pair.b), relative = way_a - way_b;
+  const Vec3 moved_a = displacement(pair.a), moved_b = displacement(pair.b), relative = moved_a - moved_b;
   const double length = norm(relative);
   if (length < kSwept) return 0;
   double look = smallest(pair.a) / 2;
-  if (way_b != Vec3{}) look = std::min(look, smallest(pair.b) / 2);
+  if (moved_b != Vec3{}) look = std::min(look, smallest(pair.b) / 2);
   const double looks = std::min(kMostLooks, std::ceil(length / look));
-  if (length > looks * 2 * look) errors.unswept.add(length / h, tick, way_a == Vec3{} ? pair.b : pair.a);
+  if (length > looks * 2 * look) errors.unswept.add(length / h, tick, moved_a == Vec3{} ? pair.b : pair.a);
   double before = 0, at = 0;
   for (double k = 1; k <= looks && at == 0; ++k) {
     if (collide_at(pair, k / looks) > 0) at = k / looks;
@@ -104,7 +104,7 @@ int RigidWorld::Impl::sweep(const Pair& pair) {
     if (nearer <= 0) continue;
     contact.surface.motionN = -(nearer - contact.geom.depth) / h;
     contact.geom.depth = 0;
-    const Vec3 back = pair.b == kFloor || !bodies[pair.b].handle ? at * way_a : (0.5 * at) * (way_a + way_b);
+    const Vec3 back = pair.b == kFloor || !bodies[pair.b].handle ? at * moved_a : (0.5 * at) * (moved_a + moved_b);
     for (int k = 0; k < 3; ++k) contact.geom.pos[k] -= (&back.x)[k];
     found[static_cast<std::size_t>(kept++)] = contact;
   }

@@ -216,7 +216,7 @@ struct RigidWorld::Impl {
   bool find_contacts();
   std::uint32_t group_of(std::uint32_t body);
   void make_groups();
-  Vec3 way(std::uint32_t body) const;
+  Vec3 displacement(std::uint32_t body) const;
   int collide_at(const Pair& pair, double fraction);
   int sweep(const Pair& pair);
   double smallest(std::uint32_t body) const;

@@ -63,15 +63,16 @@ bool BoxProxy::enter(const Vec3& probe) noexcept {
   double first = 0, last = 1;
   std::optional<BoxFace> met;
   for (std::uint8_t axis = 0; axis < 3; ++axis) {
-    const double from = component(proxy_, axis), way = component(probe, axis) - from, extent = component(half_, axis);
-    if (way == 0) {
+    const double from = component(proxy_, axis), displacement = component(probe, axis) - from, extent = component(half_, axis);
+    if (displacement == 0) {
       if (std::abs(from) >= extent) return false;
       continue;
     }
-    const double near = (-std::copysign(extent, way) - from) / way, far = (std::copysign(extent, way) - from) / way;
+    const double near = (-std::copysign(extent, displacement) - from) / displacement,
+                 far = (std::copysign(extent, displacement) - from) / displacement;
     if (near >= first) {
       first = near;
-      met = BoxFace{axis, way > 0};
+      met = BoxFace{axis, displacement > 0};
     }
     last = std::min(last, far);
   }

@@ -168,7 +168,7 @@ tl::expected<std::string, Diagnostic> read_beside(const std::string& folder, std
   const fs::path home = fs::canonical(folder, error), full = fs::canonical(fs::path(folder) / path, error);
   if (error || !fs::is_regular_file(full, ignored))
     return refused(Errc::io, "R-SRF-1", "no such file", "Copy it beside the scene: a .gltf without its files is not whole.");
-  if (const fs::path way = full.lexically_relative(home); way.empty() || *way.begin() == "..")
+  if (const fs::path inside = full.lexically_relative(home); inside.empty() || *inside.begin() == "..")
     return refused(Errc::unsupported, "R-SRF-3", "a link that leads out of the folder of the scene",
                    "Put the file itself there.");
   std::ifstream in(full, std::ios::binary | std::ios::ate);

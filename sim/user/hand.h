@@ -36,7 +36,7 @@ constexpr HandImpedance hand_impedance(Grip grip) noexcept {
 /// Seed of the hand of a scene's user, in a simulation or a session of this seed.
 std::uint64_t hand_seed(std::uint64_t seed, std::size_t user) noexcept;
 
-/// Fraction of the way done at fraction s of the time, with zero velocity and acceleration at both ends (Flash and Hogan 1985), and its
+/// Fraction of the path done at fraction s of the time, with zero velocity and acceleration at both ends (Flash and Hogan 1985), and its
 /// slope.
 struct MinimumJerk {
   double place, slope;
@@ -84,7 +84,7 @@ struct Aim {
 class Spiral {
  public:
   Spiral(const Vec3& from, const Vec3& to, const Vec3& centre, double turns);
-  Aim at(double fraction) const noexcept;  ///< fraction of the way; velocity per fraction, not per second
+  Aim at(double fraction) const noexcept;  ///< fraction of the path; velocity per fraction, not per second
 
  private:
   Vec3 centre_;

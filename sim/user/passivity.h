@@ -105,7 +105,7 @@ class SwingMeter {
  private:
   static constexpr std::size_t kInARow = 4;
   struct Axis {
-    int direction = 0;       // of the way since the last turning point; 0: there was none
+    int direction = 0;       // of the motion since the last turning point; 0: there was none
     double peak = 0;         // [m] farthest on it
     double turned = 0;       // [m] the last turning point
     std::size_t swings = 0;  // so far

@@ -128,15 +128,16 @@ def session_findings(book):
     is_part = [len(c) == 4 and c[2] in ("up", "down", "both") for c in tables]
     forms = {int(c[0]): c[1] for c, part in zip(tables, is_part) if not part and len(c) == 4 and re.fullmatch(r"[0-2]", c[0])}
     kinds = names_in(next(c[2] for c in tables if c[:2] == ["0", "handshake"]))
-    parts = {way: {int(c[0]): c[1] for c in tables if re.fullmatch(r"\d", c[0]) and len(c) == 4 and c[2] in (way, "both")} for way in ("up", "down")}
+    parts = {direction: {int(c[0]): c[1] for c in tables if re.fullmatch(r"\d", c[0]) and len(c) == 4 and c[2] in (direction, "both")}
+             for direction in ("up", "down")}
     reasons = {int(c[0]): c[1] for c in rows(three) if len(c) == 3 and re.fullmatch(r"\d", c[0])}
     for name, here in (("form of a datagram", forms), ("kind of a handshake", kinds), ("part `type` up", parts["up"]), ("part `type` down", parts["down"]),
                        ("`reason` 3", reasons)):
         if stated.get(name) != here:
             yield f"registry, section 4: {name} is {stated.get(name)}; 70 has {here}"
-    for number, way in (("3.1", "down"), ("3.2", "up")):
+    for number, direction in (("3.1", "down"), ("3.2", "up")):
         named = {cells[0] for cells in rows(section(book, "70", number)) if len(cells) == 3}
-        yield from (f"70, section {number}: nothing says what the part {part} does" for part in parts[way].values() if part not in named)
+        yield from (f"70, section {number}: nothing says what the part {part} does" for part in parts[direction].values() if part not in named)
         asked = {word for cells in rows(section(book, "70", number)) if len(cells) == 5 for word in re.findall(r"\w+", cells[0])}
         yield from (f"70, section {number}: nothing says what the handshake {kind} does" for kind in kinds.values() if kind not in asked)
 

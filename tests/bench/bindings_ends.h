@@ -38,7 +38,7 @@ T must(Result<T> result) {
 }
 
 /// Datagrams between the ends, which allocate nothing once they have room.
-class Way {
+class Datagrams {
  public:
   void put(std::span<const std::uint8_t> bytes) {
     if (count_ == slots_.size()) slots_.emplace_back();
@@ -143,7 +143,7 @@ struct Cpp {
     SessionServer server_;
     SessionClient client_;
     unsigned exp_;
-    Way up_, down_;
+    Datagrams up_, down_;
   };
 };
 
@@ -277,7 +277,7 @@ struct C {
     std::unique_ptr<tactus_server, Destroy<tactus_server_destroy>> server_;
     std::unique_ptr<tactus_client, Destroy<tactus_client_destroy>> client_;
     std::array<std::uint8_t, TACTUS_DATAGRAM_BYTES> room_{};
-    Way up_, down_;
+    Datagrams up_, down_;
   };
 };
 

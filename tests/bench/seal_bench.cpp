@@ -31,7 +31,7 @@ struct Pair {
   std::vector<double> steps;  // [us]
 
   void up() {
-    while (const auto said = client.poll_datagram()) static_cast<void>(server.open(now, kClient, *said));
+    while (const auto message = client.poll_datagram()) static_cast<void>(server.open(now, kClient, *message));
     while (server.has_work()) {
       const auto start = Clock::now();
       server.work(now);
@@ -41,7 +41,7 @@ struct Pair {
   void shake() {
     for (int i = 0; i < 10 && !client.is_open(); ++i) {
       up();
-      while (const auto said = server.poll_datagram()) static_cast<void>(client.open(now, said->bytes));
+      while (const auto message = server.poll_datagram()) static_cast<void>(client.open(now, message->bytes));
     }
     if (!client.is_open()) std::abort();
   }
@@ -97,8 +97,8 @@ BENCHMARK(handshake)->Unit(benchmark::kMicrosecond);
 /// A first ClientHello, which is answered with a cookie.
 void cookie(benchmark::State& state) {
   Pair pair;
-  const auto said = pair.client.poll_datagram().value();
-  const Bytes hello(said.begin(), said.end());
+  const auto message = pair.client.poll_datagram().value();
+  const Bytes hello(message.begin(), message.end());
   for (auto _ : state) {
     static_cast<void>(pair.server.open(pair.now += kPause, kClient, hello));
     if (!pair.server.poll_datagram()) return state.SkipWithError("no answer");

@@ -48,8 +48,8 @@ def measure(program, scene, observers, folder):
     def rate(name, **labels):
         return (value(after, name, **labels) - value(before, name, **labels)) / seconds
 
-    def layers(way):
-        return [8e-3 * rate(f"tactus_{way}_bytes_total", layer=layer) / (observers + 1) for layer in ("payload", "session", "seal", "udp_ip")]
+    def layers(direction):
+        return [8e-3 * rate(f"tactus_{direction}_bytes_total", layer=layer) / (observers + 1) for layer in ("payload", "session", "seal", "udp_ip")]
 
     work = before["tactus_tick_work_seconds"].samples, after["tactus_tick_work_seconds"].samples
     count = [rows["tactus_tick_work_seconds_count", ()] for rows in work]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Cost of sessions: a server that sends 10 moving objects at 1 kHz to so many live clients, each 10 ms of way from it, and what a
+/// Cost of sessions: a server that sends 10 moving objects at 1 kHz to so many live clients, each 10 ms from it, and what a
 /// datagram costs a client, a true one and one of a stranger. Time is virtual: only the calls that are named are measured.
 #include <benchmark/benchmark.h>
 
@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t kObjects = 10;
-constexpr std::uint64_t kTick = 1000, kWay = 10'000;  // [us]
+constexpr std::uint64_t kTick = 1000, kDelay = 10'000;  // [us]
 constexpr int kWarmUp = 2000;                         // ticks
 
 class World {
@@ -71,7 +71,7 @@ class World {
         ++down;
       }
       while (const auto datagram = clients_[i].end->poll_datagram(now_))
-        clients_[i].up.push_back({now_ + kWay, Bytes(datagram->begin(), datagram->end())});
+        clients_[i].up.push_back({now_ + kDelay, Bytes(datagram->begin(), datagram->end())});
       for (; !clients_[i].up.empty() && clients_[i].up.front().due <= now_; clients_[i].up.pop_front()) {
         const auto heard = Clock::now();
         if (!server->handle_datagram(now_, i + 1, clients_[i].up.front().bytes)) std::abort();
@@ -95,16 +95,16 @@ class World {
       server_time += Clock::now() - start;
       if (!datagram) return;
       bytes += datagram->bytes.size();
-      clients_[datagram->peer - 1].down.push_back({now_ + kWay, Bytes(datagram->bytes.begin(), datagram->bytes.end())});
+      clients_[datagram->peer - 1].down.push_back({now_ + kDelay, Bytes(datagram->bytes.begin(), datagram->bytes.end())});
     }
   }
-  struct OnItsWay {
+  struct InFlight {
     std::uint64_t due = 0;
     Bytes bytes;
   };
   struct Client {
     std::unique_ptr<SessionClient> end;
-    std::deque<OnItsWay> up, down;
+    std::deque<InFlight> up, down;
   };
   std::uint64_t now_ = 1'000'000;
   std::int64_t tick_ = 0;

@@ -35,9 +35,9 @@ struct Ends {
   }
   tactus_session_status status(bool of_client) const {
     auto out = sized<tactus_session_status>();
-    const auto said =
+    const auto done =
         of_client ? tactus_client_status(client.get(), &out, nullptr) : tactus_server_status(server.get(), 0, &out, nullptr);
-    EXPECT_EQ(said, TACTUS_OK);
+    EXPECT_EQ(done, TACTUS_OK);
     return out;
   }
   /// Ticks of 1 ms, without a device.
@@ -166,7 +166,7 @@ TEST(CSession, SendsWhatIsNear) {
   EXPECT_EQ(info.interest_reach, 2);
   Truth truth;
   const double far[] = {5, 0, 0}, between[] = {0.8, 0, 0}, near_by[] = {0.2, 0, 0};
-  ASSERT_EQ(tactus_client_look_from(ends.client.get(), 0, far, nullptr), TACTUS_OK);
+  ASSERT_EQ(tactus_client_set_viewpoint(ends.client.get(), 0, far, nullptr), TACTUS_OK);
   ASSERT_EQ(tactus_client_open(ends.client.get(), 0, 2, nullptr), TACTUS_OK);
   ends.run(truth, 0, 500);
   const auto level = [&](std::int64_t tick) {
@@ -175,24 +175,24 @@ TEST(CSession, SendsWhatIsNear) {
     return int{out};
   };
   EXPECT_EQ(level(499), TACTUS_OUT_OF_INTEREST);
-  ASSERT_EQ(tactus_client_look_from(ends.client.get(), 500'000, between, nullptr), TACTUS_OK);
+  ASSERT_EQ(tactus_client_set_viewpoint(ends.client.get(), 500'000, between, nullptr), TACTUS_OK);
   ends.run(truth, 500, 1000);
   EXPECT_EQ(level(999), 1);
-  ASSERT_EQ(tactus_client_look_from(ends.client.get(), 1'000'000, near_by, nullptr), TACTUS_OK);
+  ASSERT_EQ(tactus_client_set_viewpoint(ends.client.get(), 1'000'000, near_by, nullptr), TACTUS_OK);
   ends.run(truth, 1000, 1500);
   EXPECT_EQ(level(1499), 0);
-  EXPECT_REFUSED("R-API-12", tactus_client_look_from, ends.client.get(), 1'500'000, nullptr);
+  EXPECT_REFUSED("R-API-12", tactus_client_set_viewpoint, ends.client.get(), 1'500'000, nullptr);
   EXPECT_REFUSED("R-API-12", tactus_receiver_levels, tactus_client_receiver(ends.client.get()), 1, 1, 2, nullptr);
 
   const Sender sender = make_sender(ends.scene);
-  ASSERT_EQ(tactus_sender_look_from(sender.get(), far, 1, nullptr), TACTUS_OK);
+  ASSERT_EQ(tactus_sender_set_viewpoints(sender.get(), far, 1, nullptr), TACTUS_OK);
   std::size_t packets = 99;
   ASSERT_EQ(tactus_sender_encode(sender.get(), 0, truth.at(0), &packets, nullptr), TACTUS_OK);
   EXPECT_EQ(packets, 0u);
-  ASSERT_EQ(tactus_sender_look_from(sender.get(), near_by, 1, nullptr), TACTUS_OK);
+  ASSERT_EQ(tactus_sender_set_viewpoints(sender.get(), near_by, 1, nullptr), TACTUS_OK);
   ASSERT_EQ(tactus_sender_encode(sender.get(), 1, truth.at(1), &packets, nullptr), TACTUS_OK);
   EXPECT_EQ(packets, 1u);
-  EXPECT_REFUSED("R-API-12", tactus_sender_look_from, sender.get(), nullptr, 1);
+  EXPECT_REFUSED("R-API-12", tactus_sender_set_viewpoints, sender.get(), nullptr, 1);
   options.interest_reach = 0.1;
   tactus_scene_builder* raw = nullptr;
   ASSERT_EQ(tactus_scene_builder_create(&options, &raw, nullptr), TACTUS_OK);

@@ -13,10 +13,10 @@ int main() {
   auto client = tactus::seal::Client::create(tactus::seal::Key::parse(text, "key").value(), 0);
   if (!here || !server || !client) return 1;
   for (int i = 0; i < 10 && !client->is_open(); ++i) {
-    while (const auto said = client->poll_datagram()) server->open(0, *here, *said);
+    while (const auto message = client->poll_datagram()) server->open(0, *here, *message);
     server->work(0);
-    while (const auto said = server->poll_datagram())
-      if (!client->open(0, said->bytes)) return 1;
+    while (const auto message = server->poll_datagram())
+      if (!client->open(0, message->bytes)) return 1;
   }
   const std::uint8_t plain[]{1, 2, 3};
   const auto sealed = client->seal(plain);

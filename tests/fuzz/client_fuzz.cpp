@@ -21,9 +21,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   DevicePath path(device_scene(*scene).value());
   path.shift(0, 3);
   ReplicaOptions options;
-  constexpr Interpolation kWays[] = {Interpolation::none, Interpolation::linear, Interpolation::playout, Interpolation::hermite,
+  constexpr Interpolation kInterpolations[] = {Interpolation::none, Interpolation::linear, Interpolation::playout, Interpolation::hermite,
                                      Interpolation::blending};
-  if (size > 0) options.interpolation = kWays[data[0] % 5];
+  if (size > 0) options.interpolation = kInterpolations[data[0] % 5];
   if (!Replica::check(options, *scene)) options.interpolation = Interpolation::none;
   Replica replica(*scene, options, {});
   if (knows_device) predictor.know(path), replica.know(path);

@@ -116,11 +116,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (std::uint64_t number = 1; in.ok() && number < 200; ++number) {
     tick += 1 + in.u8() % 12;
     const RigidState state = device(**scene, tick, of.rest[in.u8() % of.rest.size()], in);
-    const bool acts = in.u8() % 8 != 0;
-    if (acts) known->add(number, state);
+    const bool takes_effect = in.u8() % 8 != 0;
+    if (takes_effect) known->add(number, state);
     signalled->add(number, state);
     (void)learns.body_at(tick, b);
-    signalled->settle(number, [&](std::uint64_t n) { return n != number || acts; });
+    signalled->settle(number, [&](std::uint64_t n) { return n != number || takes_effect; });
     const bool there = knows.body_at(tick, a);
     require(learns.body_at(tick, b) == there);
     require(!there || a == b);

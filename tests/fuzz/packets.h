@@ -33,7 +33,7 @@ inline Result<DecodedPacket> push_packet(Receiver& receiver, std::span<const std
   const auto decoded = receiver.push(packet, now);
   if (decoded) {
     require(part && decoded->substream == substream);
-    require(decoded->tick <= receiver.tick(substream));  // it may have been overtaken
+    require(decoded->tick <= receiver.tick(substream));  // it may be reordered
   } else {
     require(decoded.error().rule[0] == 'R' && decoded.error().bit_offset <= 8 * packet.size());
     require(held(receiver, substream) == before);

@@ -15,7 +15,7 @@ namespace {
 using namespace tactus;
 
 /// Those of a level of detail.
-RigidTriggers widened(RigidTriggers t, std::uint8_t lod) {
+RigidTriggers scaled(RigidTriggers t, std::uint8_t lod) {
   for (double* bound : {&t.visual_position, &t.visual_rotation, &t.weber_fraction, &t.perceptual_fraction, &t.cone_angle,
                         &t.fixed_position, &t.fixed_rotation})
     *bound = std::ldexp(*bound, lod);
@@ -73,9 +73,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (scene->driven && !contacts.empty())
       if (const auto device = to_grid({{contacts[0].device, {}}, {}, {}}, tick, scene->grid))
         path->add(static_cast<std::uint64_t>(tick) + 1, *device);
-    if (rule >= 192) {  // below that the client never says
+    if (rule >= 192) {  // below that the client never reports
       const Vec3 place{0.1 * in.u8(), 0, 0};
-      sender->look_from({&place, in.u8() < 250 ? 1u : 0u});
+      sender->set_viewpoints({&place, in.u8() < 250 ? 1u : 0u});
     }
     const Pose before = to_pose(receiver.replica().pose(0, tick), scene->grid.position);
     const auto packets = sender->encode(tick, {.objects = {&next, 1}, .contacts = contacts});
@@ -92,9 +92,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(receiver.state_hash(0) == sender->state_hash(0));
     const std::uint8_t lod = receiver.replica().lod(0, tick);
     require(scene->interest.has_value() || lod == 0);
-    const Vec3 way = sample.pose.position - before.position;  // longer ones than an update can name take two
-    const bool is_near = std::abs(way.x) < 511 && std::abs(way.y) < 511 && std::abs(way.z) < 511;
-    if (lod != kOutOfInterest && is_near) check_bounds(widened(options.triggers, lod), receiver, tick, sample, contacts);
+    const Vec3 displacement = sample.pose.position - before.position;  // longer ones than an update can name take two
+    const bool is_near = std::abs(displacement.x) < 511 && std::abs(displacement.y) < 511 && std::abs(displacement.z) < 511;
+    if (lod != kOutOfInterest && is_near) check_bounds(scaled(options.triggers, lod), receiver, tick, sample, contacts);
   }
   return 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A client and a server of the seal in memory, and what must hold whatever is said to them.
+/// A client and a server of the seal in memory, and what must hold whatever is sent to them.
 #pragma once
 
 #include <algorithm>
@@ -29,21 +29,21 @@ struct World {
   /// Everything arrives.
   void flow() {
     for (int i = 0; i < 6; ++i) {
-      while (const auto said = client.poll_datagram()) {
-        up.assign(said->begin(), said->end());
+      while (const auto message = client.poll_datagram()) {
+        up.assign(message->begin(), message->end());
         static_cast<void>(server.open(now, home, up));
       }
       server.work(now);
-      while (const auto said = server.poll_datagram()) {
-        down.assign(said->bytes.begin(), said->bytes.end());
-        if (said->to == home) require(client.open(now, down).has_value());
+      while (const auto message = server.poll_datagram()) {
+        down.assign(message->bytes.begin(), message->bytes.end());
+        if (message->to == home) require(client.open(now, down).has_value());
       }
     }
   }
   void hostile_up(const net::Address& from, const Bytes& datagram) {
     require(!server.open(now, from, datagram) || datagram == up);
     std::size_t answered = 0;
-    while (const auto said = server.poll_datagram()) answered += said->bytes.size();
+    while (const auto message = server.poll_datagram()) answered += message->bytes.size();
     require(answered <= 3 * datagram.size());
   }
   void hostile_down(const Bytes& datagram) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A session in any state, and datagrams whose check holds, whatever is in them: the input is a row of (operation, size, its bytes).
-/// Nothing long is answered, to an address that has not proven itself no more than it said, and what an end says can be read.
+/// Nothing long is answered, to an address that is not validated no more than it sent, and what an end sends can be read.
 #include <cstring>
 
 #include <tactus/session/device_signal.h>

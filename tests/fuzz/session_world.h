@@ -57,31 +57,31 @@ struct World {
   std::uint64_t now = 1000;
   std::int64_t tick = 0;
   struct Peer {  // 1: the client's address, 2: the stranger's
-    std::uint64_t epoch = 0, heard = 0, said = 0;
-    bool proven = false;
+    std::uint64_t epoch = 0, heard = 0, sent = 0;
+    bool validated = false;
   };
   std::array<Peer, 3> peers{};
   Bytes up, down;  // the newest of each way
   Bytes join = [] {
     DatagramWriter writer(Direction::up);
-    const auto said = writer.write(Join{Role::participant, 9, 1 << 30, 1 << 30});
-    return Bytes(said.begin(), said.end());
+    const auto message = writer.write(Join{Role::participant, 9, 1 << 30, 1 << 30});
+    return Bytes(message.begin(), message.end());
   }();
 
   void to_server(std::uint64_t peer, Input bytes) {
     Peer& from = peers[peer];
     from.heard += bytes.size();
-    from.proven = from.proven || (from.epoch != 0 && is_of_epoch(bytes, from.epoch, Direction::up));
+    from.validated = from.validated || (from.epoch != 0 && is_of_epoch(bytes, from.epoch, Direction::up));
     static_cast<void>(server.handle_datagram(now, peer, bytes));
   }
   void drain(bool delivers) {
     while (const auto datagram = server.poll_datagram(now)) {
       Peer& to = peers.at(datagram->peer);
-      const auto said = read_datagram(datagram->bytes, Direction::down);
-      require(said && datagram->bytes.size() <= kLargestDatagram);
-      to.said += datagram->bytes.size();
-      require(to.proven || to.said <= to.heard);
-      if (const auto* welcome = std::get_if<Welcome>(&*said)) to.epoch = welcome->epoch;
+      const auto message = read_datagram(datagram->bytes, Direction::down);
+      require(message && datagram->bytes.size() <= kLargestDatagram);
+      to.sent += datagram->bytes.size();
+      require(to.validated || to.sent <= to.heard);
+      if (const auto* welcome = std::get_if<Welcome>(&*message)) to.epoch = welcome->epoch;
       if (datagram->peer != 1) continue;
       down.assign(datagram->bytes.begin(), datagram->bytes.end());
       if (delivers) static_cast<void>(client.handle_datagram(now, down));

@@ -82,12 +82,13 @@ void devices(ByteReader& in) {
     sample.velocity = moved.velocity;
     std::optional<DeviceContact> touched;
     if (in.u8() & 1) touched = DeviceContact{contact(in, moved.pose).point, 1.0 + in.u16()};
-    const Vec3 way = sample.position - device_at(receiver, tick, 0).position;
+    const Vec3 displacement = sample.position - device_at(receiver, tick, 0).position;
     const auto packets = sender->encode(tick, truth.of(tick, sample, touched));
     require(packets.has_value());
     for (const Packet& packet : *packets) require(receiver.push(packet.bytes).has_value());
     const bool is_held = std::ranges::any_of(sender->held(), [](const HeldPart& h) { return h.part == TruthPart::object; });
-    const bool is_near = std::abs(way.x) < 511 && std::abs(way.y) < 511 && std::abs(way.z) < 511;  // what an update can name
+    const bool is_near = std::abs(displacement.x) < 511 && std::abs(displacement.y) < 511 &&
+                         std::abs(displacement.z) < 511;  // what an update can name
     if (is_held || !is_near) continue;
     const DeviceSample shown = device_at(receiver, tick, 0);
     require(norm(shown.position - sample.position) <= coding.position);

@@ -21,8 +21,8 @@ struct Heard {
 /// Records until the end or the first broken one.
 Heard listen(StreamFileReader& reader, bool has_clock) {
   const Interpolation at_once = reader.scene()->is_smoothed ? Interpolation::none : Interpolation::linear;
-  const Interpolation way = has_clock ? Interpolation::playout : at_once;
-  const ReceiverOptions options{.replica = {.interpolation = way}, .limits = kLimits};
+  const Interpolation interpolation = has_clock ? Interpolation::playout : at_once;
+  const ReceiverOptions options{.replica = {.interpolation = interpolation}, .limits = kLimits};
   auto receiver = Receiver::create(reader.scene(), options).value();
   Heard out;
   for (bool sound = true;; ++out.records) {

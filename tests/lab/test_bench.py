@@ -101,7 +101,7 @@ class Others(unittest.TestCase):
         self.assertEqual(session.parser("").parse_args([]).encoder, [])
 
     def test_remarks_of_a_session(self):
-        case = {"recovery_s": 0.2, "seconds": 10, "bounds_widened": {"widest": 2.04, "for_s": 5}}
+        case = {"recovery_s": 0.2, "seconds": 10, "bound_scale": {"largest": 2.04, "for_s": 5}}
         self.assertEqual(session.remarks(case), "; recovered 200 ms after it; bounds up to 2.0 times as wide for 50 % of the time")
 
     def test_tables_of_signals_begin_with_each_user_and_signal(self):

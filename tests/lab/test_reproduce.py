@@ -19,7 +19,7 @@ sys.dont_write_bytecode = True
 
 import reproduce  # noqa: E402
 from common import arguments  # noqa: E402
-from thesis import delay, limits, made, rates, signals, touch, ways  # noqa: E402
+from thesis import delay, interpolations, limits, made, rates, signals, touch  # noqa: E402
 
 TACTUS = os.environ.get("TACTUS", "")
 STUDY = os.path.join(os.path.dirname(TACTUS), "tactus-study")
@@ -48,8 +48,8 @@ class Arithmetic(unittest.TestCase):
             self.assertEqual(made._rounded(value), text)
 
     def test_quantiles_take_the_nearest(self):
-        self.assertEqual([ways.quantile([1, 2, 3, 4], fraction) for fraction in (0, 0.5, 0.99, 1)], [1, 3, 4, 4])
-        self.assertEqual(ways.quantile([], 0.5), 0)
+        self.assertEqual([interpolations.quantile([1, 2, 3, 4], fraction) for fraction in (0, 0.5, 0.99, 1)], [1, 3, 4, 4])
+        self.assertEqual(interpolations.quantile([], 0.5), 0)
 
     def test_gamma_density_is_a_density(self):
         shape, scale, start = 4.5, 5.3, 50

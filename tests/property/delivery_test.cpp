@@ -125,7 +125,7 @@ TEST_P(Delivery, AcceptedPacketsGiveTheSendersState) {
   const std::vector<Sent> sent = send(declared, 601);
   auto receiver = Receiver::create(declared).value();
   std::set<std::size_t> held;  // packets whose states a receiver holds
-  int accepted = 0, overtaken = 0, stale = 0, without_baseline = 0;
+  int accepted = 0, reordered = 0, stale = 0, without_baseline = 0;
   for (const std::size_t i : arrivals(sent.size(), 602)) {
     const std::uint64_t before = receiver.state_hash(0);
     const auto decoded = receiver.push(sent[i].bytes);
@@ -140,7 +140,7 @@ TEST_P(Delivery, AcceptedPacketsGiveTheSendersState) {
       EXPECT_STREQ(decoded.error().rule, "R-PKT-4");
     } else {
       ++accepted;
-      overtaken += late ? 1 : 0;
+      reordered += late ? 1 : 0;
       ASSERT_TRUE(decoded) << decoded.error().rule;
       EXPECT_EQ(decoded->tick, sent[i].tick);
       held.insert(i);
@@ -150,7 +150,7 @@ TEST_P(Delivery, AcceptedPacketsGiveTheSendersState) {
     }
     EXPECT_EQ(receiver.state_hash(0), before);
   }
-  EXPECT_EQ(overtaken > 10, declared->baseline_span > 1) << overtaken;
+  EXPECT_EQ(reordered > 10, declared->baseline_span > 1) << reordered;
   EXPECT_GT(accepted, 100);
   EXPECT_GT(stale, 10);
   EXPECT_GT(without_baseline, 10);

@@ -16,8 +16,8 @@ DELAY_US = {"up": 15_000, "down": 25_000}
 LOSS = 0.05
 
 
-def network(way: str, seed: int) -> str:
-    return f"delay={DELAY_US[way]}us,loss={LOSS},seed={seed}"
+def network(direction: str, seed: int) -> str:
+    return f"delay={DELAY_US[direction]}us,loss={LOSS},seed={seed}"
 
 
 def main(args: list[str]) -> int:
@@ -49,8 +49,8 @@ def main(args: list[str]) -> int:
     assert at_server["heard"]["datagrams"] == up["numbered_arrived"], (at_server, up)
     assert at_server["sent"]["datagrams"] == down["numbered_sent"], (at_server, down)
     assert 0 < at_client["heard"]["datagrams"] <= down["numbered_arrived"], (at_client, down)
-    for way in (up, down):
-        assert way["sent"] == way["arrived"] + way["lost"] and 0 < way["lost"] < way["sent"], way
+    for direction in (up, down):
+        assert direction["sent"] == direction["arrived"] + direction["lost"] and 0 < direction["lost"] < direction["sent"], direction
     for traffic in (at_server, at_client):
         assert traffic["wrong_states"] == 0 and traffic["heard"]["packets"] > 0, traffic
 

@@ -116,7 +116,7 @@ Bytes datagram_of(Bytes packet) {
 bool is_numbered(Bytes datagram) { return (datagram[0] & 3) == 1 || (datagram[0] & 3) == 2; }
 
 /// One direction.
-struct Way {
+struct Direction {
   Link link;
   std::uint64_t numbered_sent = 0, numbered_arrived = 0;
   std::uint64_t refused = 0;  // by the TUN device
@@ -147,7 +147,7 @@ struct Way {
   }
 };
 
-Way way_of(const char* typed) {
+Direction direction_of(const char* typed) {
   const auto options = tactus::cli::parse_link(typed);
   if (!options) {
     std::fprintf(stderr, "%s\n", options.error().c_str());
@@ -163,7 +163,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: tun_link UP DOWN SERVER CLIENT\n");
     return 2;
   }
-  Way up = way_of(argv[1]), down = way_of(argv[2]);
+  Direction up = direction_of(argv[1]), down = direction_of(argv[2]);
   End server("127.0.0.1", "127.0.0.2"), client("127.0.0.2", "127.0.0.1");
   server.start(argv[3]);
   client.start(argv[4]);
@@ -176,7 +176,7 @@ int main(int argc, char** argv) {
   for (bool running = true; running;) {
     running = static_cast<int>(server.is_running()) + static_cast<int>(client.is_running()) > 0;
     Microseconds next = now() + kLook;
-    for (const Way* way : {&up, &down}) next = std::min(next, way->link.next().value_or(next));
+    for (const Direction* direction : {&up, &down}) next = std::min(next, direction->link.next().value_or(next));
     const Microseconds left = std::max<Microseconds>(0, next - now());
     const timespec timeout{left / 1'000'000, left % 1'000'000 * 1000};
     std::array<pollfd, 2> handles{pollfd{server.device(), POLLIN, 0}, pollfd{client.device(), POLLIN, 0}};

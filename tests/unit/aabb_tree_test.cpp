@@ -92,7 +92,7 @@ TEST(Triangle, MovingSphereStopsAtTheRadius) {
     const Corners v{random_point(random, 1), random_point(random, 1), random_point(random, 1)};
     const Vec3 from = random_point(random, 3);
     const Sweep sweep{from, 2.0 * (random_point(random, 1) - from), random.uniform(1e-8, 0.5), 1e-9};
-    const auto distance = [&](double t) { return std::sqrt(closest_on_triangle(sweep.from + t * sweep.way, v).distance2); };
+    const auto distance = [&](double t) { return std::sqrt(closest_on_triangle(sweep.from + t * sweep.displacement, v).distance2); };
     if (distance(0) < sweep.radius) continue;
     const auto hit = sphere_hits_triangle(sweep, v, 1);
     const double end = hit ? hit->t : 1;
@@ -109,7 +109,7 @@ TEST(Triangle, SphereMayLeaveButNotComeCloser) {
   Sweep sweep{{0.2, 0.2, 0.05}, {0, 0, -1}, 0.1, 1e-9};
   ASSERT_TRUE(sphere_hits_triangle(sweep, v, 1)) << "reaches into it already";
   EXPECT_EQ(sphere_hits_triangle(sweep, v, 1)->t, 0);
-  sweep.way = {0.3, 0, 0.01};
+  sweep.displacement = {0.3, 0, 0.01};
   EXPECT_FALSE(sphere_hits_triangle(sweep, v, 1));
 }
 

@@ -297,7 +297,7 @@ TEST(AcknowledgedBaselines, WithoutLossOnlyWhatShouldHaveBeenAnsweredIsSentAgain
   EXPECT_EQ(object.until_next(1000), 55);
   EXPECT_EQ(object.until_next(1000), 55);
   object.sender().set_link({});
-  EXPECT_EQ(object.until_next(5000), std::nullopt) << "nothing is known of the way back";
+  EXPECT_EQ(object.until_next(5000), std::nullopt) << "nothing is known of the delay back";
 }
 
 TEST(AcknowledgedBaselines, WhatIsCopiedIsSentAgainOnlyWhenTheAnswerIsDue) {

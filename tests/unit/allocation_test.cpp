@@ -27,13 +27,13 @@ TEST(Allocation, TheCounterCounts) {
 
 TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
   constexpr std::size_t kObjects = 20;
-  for (const Interpolation way : {Interpolation::linear, Interpolation::none, Interpolation::playout}) {
+  for (const Interpolation interpolation : {Interpolation::linear, Interpolation::none, Interpolation::playout}) {
     SceneSpec spec = testing::spec_of(kObjects);
-    spec.is_smoothed = way != Interpolation::linear;
+    spec.is_smoothed = interpolation != Interpolation::linear;
     spec.motion = {{0, 0, -1285816}, 321454};
     const SharedScene scene = testing::shared(spec);
     auto sender = Sender::create(scene, {.policy = {.key_interval = 0.2}}).value();
-    auto receiver = Receiver::create(scene, {.replica = {.interpolation = way}, .limits = {}}).value();
+    auto receiver = Receiver::create(scene, {.replica = {.interpolation = interpolation}, .limits = {}}).value();
     std::vector<testing::Motion> motions;
     for (std::size_t i = 0; i < kObjects; ++i) motions.emplace_back(i);
     std::vector<RigidSample> samples(kObjects);
@@ -73,8 +73,8 @@ TEST(Allocation, ASceneOfSeveralSubstreamsAllocatesNothing) {
   for (const Baseline baseline : {Baseline::previous, Baseline::acknowledged}) {
     auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.baseline = baseline}}).value();
     sender.set_link({.answer = 5, .loss = 0.1});
-    const Interpolation way = baseline == Baseline::previous ? Interpolation::none : Interpolation::playout;
-    auto receiver = Receiver::create(scene, {.replica = {.interpolation = way}, .limits = {}}).value();
+    const Interpolation interpolation = baseline == Baseline::previous ? Interpolation::none : Interpolation::playout;
+    auto receiver = Receiver::create(scene, {.replica = {.interpolation = interpolation}, .limits = {}}).value();
     testing::Motion motion(1);
     testing::DentedSheet sheet(mesh, 6);
     std::vector<testing::SheetFrame> frames;

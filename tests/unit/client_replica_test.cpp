@@ -61,14 +61,14 @@ TEST(ClientReplica, LinearInterpolationReachesThePredictedPlaceAfterTN) {
   f.update(40, {}, {});                     // no interpolation before a gap is known; afterwards the gap is 40
   f.update(80, {0.03, 0, 0}, {0.5, 0, 0});  // t_N = 0.75 * 40 = 30 ticks
   EXPECT_NEAR(f.shown(80).position.x, 0, 1e-6) << "thesis eq. 3.6 starts where the object was shown";
-  EXPECT_NEAR(f.shown(95).position.x, 0.5 * (0.03 + 0.5 * 0.03), 1e-6) << "half way to the place predicted for its end";
+  EXPECT_NEAR(f.shown(95).position.x, 0.5 * (0.03 + 0.5 * 0.03), 1e-6) << "halfway to the place predicted for its end";
   EXPECT_NEAR(f.shown(110).position.x, 0.03 + 0.5 * 0.03, 1e-6);
   EXPECT_NEAR(f.shown(150).position.x, 0.03 + 0.5 * 0.07, 1e-6) << "then dead reckoning";
 }
 
 TEST(ClientReplica, AnUpdateDuringAnInterpolationIsAppliedAtOnce) {
-  for (const Interpolation way : {Interpolation::linear, Interpolation::hermite, Interpolation::blending}) {
-    Feeder f(way);
+  for (const Interpolation interpolation : {Interpolation::linear, Interpolation::hermite, Interpolation::blending}) {
+    Feeder f(interpolation);
     f.update(0, {}, {});
     f.update(40, {}, {});
     f.update(80, {0.03, 0, 0}, {});
@@ -186,7 +186,7 @@ struct Arrival {
 
 class PlayoutReplica {
  public:
-  explicit PlayoutReplica(Interpolation way = Interpolation::playout) : replica_(*scene_, {.interpolation = way}, {}) {}
+  explicit PlayoutReplica(Interpolation interpolation = Interpolation::playout) : replica_(*scene_, {.interpolation = interpolation}, {}) {}
   void take(const Arrival& arrival, std::int64_t now = 0) {
     const RigidState state = along(arrival.tick, true);
     const RigidUpdate named{0, Reason::visual, 0};
@@ -217,7 +217,7 @@ TEST(ClientPlayout, BendsOverKnownGapsOnly) {
   EXPECT_EQ(client.shown(600), client.reckoned(500, 600)) << "packet 5 is missing, for longer than 300 ms";
   EXPECT_EQ(client.shown(950), client.reckoned(900, 950)) << "the future is not known";
   client.take({3, 441});
-  EXPECT_EQ(client.shown(470), client.reckoned(441, 470)) << "it was only overtaken";
+  EXPECT_EQ(client.shown(470), client.reckoned(441, 470)) << "it was only reordered";
 }
 
 TEST(ClientPlayout, BeforeTheFirstUpdateTheInitialStateIsShown) {
@@ -250,9 +250,9 @@ TEST(ClientPlayout, ARestartForgetsWhatWasKnown) {
   EXPECT_EQ(client.shown(460), client.reckoned(30, 460));
 }
 
-TEST(ClientReplicaOrder, AnOvertakenUpdateIsNotShown) {
-  for (const Interpolation way : {Interpolation::none, Interpolation::linear, Interpolation::hermite, Interpolation::blending}) {
-    PlayoutReplica client(way), spared(way);
+TEST(ClientReplicaOrder, AReorderedUpdateIsNotShown) {
+  for (const Interpolation interpolation : {Interpolation::none, Interpolation::linear, Interpolation::hermite, Interpolation::blending}) {
+    PlayoutReplica client(interpolation), spared(interpolation);
     for (PlayoutReplica* both : {&client, &spared}) {
       both->take({1, 400}, 400);
       both->take({3, 440}, 440);
@@ -293,7 +293,7 @@ TEST(Bend, MeetsBothUpdatesAndTheMotionBetween) {
   }
 }
 
-TEST(Bend, WithoutVelocitiesTheWayIsStraight) {
+TEST(Bend, WithoutVelocitiesThePathIsStraight) {
   const SharedScene scene = scene_of(1);
   const RigidState a = along(400, false), b = along(500, false);
   const RigidPose from{a.position, a.rotation}, to{b.position, b.rotation};
@@ -399,7 +399,7 @@ TEST(HeardPackets, KnowsTheNewestThousand) {
   EXPECT_TRUE(heard.all_between(72500, 72501)) << "nothing is between";
   EXPECT_FALSE(heard.all_between(72500, 72508));
   heard.add(72507);
-  EXPECT_TRUE(heard.all_between(72500, 72999)) << "an overtaken packet";
+  EXPECT_TRUE(heard.all_between(72500, 72999)) << "a reordered packet";
   heard.add(72007);
   EXPECT_TRUE(heard.all_between(71975, 72999)) << "the oldest heard is 1023 back";
   EXPECT_FALSE(heard.all_between(71974, 72999));

@@ -49,7 +49,7 @@ TEST_F(Pressing, WhoGoesInFeelsLessByWhatTheObjectWouldHaveFollowed) {
   EXPECT_NEAR(reduced(0.02, 80), kCoupling * (1 - kFollows * 0.008 / 0.02), 1e-9);
 }
 
-/// The object did not follow yet: what the client sees is the device's whole way, of which the server would see a fraction.
+/// The object did not follow yet: what the client sees is the device's whole displacement, of which the server would see a fraction.
 TEST_F(Pressing, AtFirstTheObjectIsAsSoftAsBothSpringsTogether) {
   go(1e-4, 50);
   EXPECT_NEAR(reduced(0.004, 80), kLeast, 1e-9);
@@ -176,7 +176,7 @@ TEST_F(Pushing, BeforeTheFrictionIsOvercomeTheStiffnessStays) {
 }
 
 /// The object stands still as far as the client knows: the force stays what overcomes the friction, and does not break down.
-TEST_F(Pushing, WhileTheStartIsOnItsWayTheForceIsTheFriction) {
+TEST_F(Pushing, WhileTheStartIsInFlightTheForceIsTheFriction) {
   go(1e-4, 300);
   for (double stretch = kFriction / kStiffness + 1e-9; stretch < 0.0068; stretch += 1e-4) {
     go(1e-4, 1);
@@ -217,8 +217,8 @@ TEST(StiffnessReduction, TheFilterBeginsWithTheFirstValueOfAContact) {
   EXPECT_NEAR(reduction.reduced(touch, 10), mean, 1e-9);
   for (int i = 0; i < 50; ++i) {
     reduction.move({0, 0, -0.19});  // holds still: the path moves on
-    const double way = 0.01 * std::max(9 - i, 0);
-    const double wanted = way >= 0.01 ? kLeast : kCoupling;
+    const double displacement = 0.01 * std::max(9 - i, 0);
+    const double wanted = displacement >= 0.01 ? kLeast : kCoupling;
     mean = 0.01 * wanted + 0.99 * mean;
     EXPECT_NEAR(reduction.reduced(touch, 10), mean, 1e-9) << i;
   }

@@ -85,15 +85,15 @@ TEST(Command, HelpOfACommandInAGroup) {
 
 TEST(Command, TextsHoldWhatTheHelpHolds) {
   Program program("tactus", "all");
-  std::string way;
+  std::string side;
   Command& csv = program.add_command("import", "").add_command("csv", "a table");
-  csv.add_option("-w,--way", way, "How")->one_of({"up", "down"})->type_name("WAY");
+  csv.add_option("-s,--side", side, "Which")->one_of({"up", "down"})->type_name("SIDE");
   const CommandText text = program.text().commands.at(0).commands.at(0);
   EXPECT_EQ(text.words, (std::vector<std::string>{"tactus", "import", "csv"}));
   EXPECT_EQ(text.options.at(0).names, (std::vector<std::string>{"-h", "--help"}));
   const OptionText& option = text.options.at(1);
-  EXPECT_EQ(option.names, (std::vector<std::string>{"-w", "--way"}));
-  EXPECT_EQ(option.value, "WAY");
+  EXPECT_EQ(option.names, (std::vector<std::string>{"-s", "--side"}));
+  EXPECT_EQ(option.value, "SIDE");
   EXPECT_EQ(option.choices, (std::vector<std::string>{"up", "down"}));
   EXPECT_TRUE(option.takes_value);
 }

@@ -34,7 +34,7 @@ inline RigidState device_state(const Scene& scene, std::int64_t tick, const Vec3
   return to_grid({{place, {}}, velocity, {}}, tick, scene.grid).value();
 }
 
-/// A packet of the device in every tick, which acts at once.
+/// A packet of the device in every tick, which takes effect at once.
 inline std::shared_ptr<DevicePath> path_along(const SharedScene& scene, std::int64_t ticks,
                                               const std::function<Vec3(std::int64_t)>& place) {
   auto path = std::make_shared<DevicePath>(device_scene(*scene).value());

@@ -94,8 +94,8 @@ TEST_F(OnTheSlab, FrictionHoldsTheProxyWithinItsCone) {
   EXPECT_NEAR(slides->force.z, -0.002 * kCoupling, 1e-12);
 }
 
-/// It comes aslant: its way meets the surface 0.5 mm before its foot, a third of the way.
-TEST_F(OnTheSlab, FrictionBeginsWhereTheWayMetTheSurface) {
+/// It comes aslant: its path meets the surface 0.5 mm before its foot, after a third of it.
+TEST_F(OnTheSlab, FrictionBeginsWhereThePathMetTheSurface) {
   rub(1);
   move({0.0295, 0.03, kCell + 0.0005});
   const auto held = move({0.031, 0.03, kCell - 0.001});
@@ -181,8 +181,8 @@ TEST(DrivenShape, MakesAnewWhatHadAnotherPast) {
   int differed = 0;
   for (std::uint64_t number = 1; number <= 120; ++number) {
     const auto tick = static_cast<std::int64_t>(5 * number);
-    const bool acts = number % 7 != 0;
-    if (acts) known->add(number, device_at(*scene, tick, pressing(tick)));
+    const bool takes_effect = number % 7 != 0;
+    if (takes_effect) known->add(number, device_at(*scene, tick, pressing(tick)));
     signalled->add(number, device_at(*scene, tick, pressing(tick)));
     if (number < 20) continue;
     differed += body_at(learns, *scene, tick) != body_at(knows, *scene, tick) ? 1 : 0;

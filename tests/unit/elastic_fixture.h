@@ -55,7 +55,7 @@ inline Vec3 pressing(std::int64_t tick) {
   return {0.03 + 0.01 * std::sin(9 * t), 0.03 + 0.008 * std::cos(7 * t), kCell + deep};
 }
 
-/// A packet of the device in every tick, which acts at once.
+/// A packet of the device in every tick, which takes effect at once.
 template <class Where>
 std::shared_ptr<DevicePath> device_along(const SharedScene& scene, std::int64_t ticks, Where where) {
   auto path = std::make_shared<DevicePath>(device_scene(*scene).value());

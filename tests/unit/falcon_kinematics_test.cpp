@@ -92,10 +92,10 @@ TEST(FalconKinematics, TheJacobianIsTheSlopeOfTheAngles) {
   constexpr double kStep = 1e-6;
   over_workspace(7, [](const Vec3& position) {
     const Pose pose = pose_at(position).value();
-    for (const Vec3& way : {Vec3{kStep, 0, 0}, Vec3{0, kStep, 0}, Vec3{0, 0, kStep}}) {
-      const Triple ahead = pose_at(position + way)->angles, behind = pose_at(position - way)->angles;
+    for (const Vec3& displacement : {Vec3{kStep, 0, 0}, Vec3{0, kStep, 0}, Vec3{0, 0, kStep}}) {
+      const Triple ahead = pose_at(position + displacement)->angles, behind = pose_at(position - displacement)->angles;
       for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_NEAR((ahead[i] - behind[i]) / 2, dot(pose.jacobian[i], way), 1e-6 * kStep * 100) << i;
+        EXPECT_NEAR((ahead[i] - behind[i]) / 2, dot(pose.jacobian[i], displacement), 1e-6 * kStep * 100) << i;
     }
   });
 }
@@ -106,11 +106,11 @@ TEST(FalconKinematics, TorquesDoTheWorkOfTheForce) {
     const Pose pose = pose_at(position).value();
     for (const Vec3& force : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{-2, 3, -1}}) {
       const Triple torque = torques(pose, force);
-      for (const Vec3& way : {Vec3{kStep, 0, 0}, Vec3{0, kStep, 0}, Vec3{0, 0, kStep}}) {
-        const Triple ahead = pose_at(position + way)->angles, behind = pose_at(position - way)->angles;
+      for (const Vec3& displacement : {Vec3{kStep, 0, 0}, Vec3{0, kStep, 0}, Vec3{0, 0, kStep}}) {
+        const Triple ahead = pose_at(position + displacement)->angles, behind = pose_at(position - displacement)->angles;
         double work = 0;  // [J]
         for (std::size_t i = 0; i < 3; ++i) work += torque[i] * (ahead[i] - behind[i]) / 2;
-        EXPECT_NEAR(work, dot(force, way), 1e-5 * kStep);
+        EXPECT_NEAR(work, dot(force, displacement), 1e-5 * kStep);
       }
     }
   });
@@ -206,8 +206,8 @@ TEST(FalconKinematics, FramesAgree) {
   EXPECT_LT(norm(to_native(from_native(position)) - position), 1e-15);
   EXPECT_EQ(force_to_native({1, 2, 3}), (Vec3{1, 3, -2}));
   // Both are right-handed, and work is work.
-  const Vec3 force{1, 2, 3}, way{1e-3, 2e-3, -1e-3};
-  EXPECT_NEAR(dot(force, way), dot(force_to_native(force), to_native(way) - to_native({})), 1e-15);
+  const Vec3 force{1, 2, 3}, displacement{1e-3, 2e-3, -1e-3};
+  EXPECT_NEAR(dot(force, displacement), dot(force_to_native(force), to_native(displacement) - to_native({})), 1e-15);
 }
 
 // ==== falcon frame ====

@@ -92,10 +92,10 @@ TEST(LevelsOfDetail, RiseWithTheDistanceAndStayWhereSomebodyStandsAtABorder) {
     return int{levels.of(0)};
   };
   EXPECT_EQ(at(100), 0) << "nobody has said from where the client looks";
-  levels.look_from({});
+  levels.set_viewpoints({});
   EXPECT_EQ(at(0), kOutOfInterest) << "its places are not known";
   const Vec3 origin;
-  levels.look_from({&origin, 1});
+  levels.set_viewpoints({&origin, 1});
   EXPECT_EQ(at(0.5), 0);
   EXPECT_EQ(at(0.57), 0) << "0.5 m and 15 %";
   EXPECT_EQ(at(0.58), 1);
@@ -108,10 +108,10 @@ TEST(LevelsOfDetail, RiseWithTheDistanceAndStayWhereSomebodyStandsAtABorder) {
   EXPECT_EQ(at(6.1), kOutOfInterest);
   EXPECT_EQ(at(5.99), 4);
   const std::array<Vec3, 2> places{origin, Vec3{6, 0, 0}};
-  levels.look_from(places);
+  levels.set_viewpoints(places);
   EXPECT_EQ(at(5.99), 0) << "the nearest place counts";
   const std::array<Vec3, 2> broken{Vec3{std::nan(""), 0, 0}, Vec3{6, 0, 0}};
-  levels.look_from(broken);
+  levels.set_viewpoints(broken);
   EXPECT_EQ(at(0), 4) << "one that is no place does not";
 }
 
@@ -121,7 +121,7 @@ TEST(LevelsOfDetail, WhatIsTouchedIsSentInFullWithinReach) {
   HeldList held(*scene);
   RigidTruth truth(*scene, {}, held);
   const Vec3 origin;
-  levels.look_from({&origin, 1});
+  levels.set_viewpoints({&origin, 1});
   RigidSample body;
   for (const auto& [x, level] : {std::pair{5.0, 0}, {7.0, int{kOutOfInterest}}}) {
     body.pose.position.x = x;
@@ -147,18 +147,18 @@ TEST(LevelsOfDetail, WhatRestsIsLookedAtWhereThePlaceMoves) {
   scan();
   EXPECT_EQ(changed, 0u);
   Vec3 place{0, 0, 0};
-  levels.look_from({&place, 1});
+  levels.set_viewpoints({&place, 1});
   scan();
   std::size_t inside = 0;
   for (std::size_t i = 0; i < 140; ++i) inside += norm(World::home(i)) <= kReach ? 1u : 0u;
   EXPECT_EQ(changed, inside) << "all were out of interest";
   place.x = 0.01;
-  levels.look_from({&place, 1});
+  levels.set_viewpoints({&place, 1});
   changed = 0;
   scan();
   EXPECT_EQ(changed, 0u) << "less than a sixteenth of the distance of full detail";
   place.x = 19;
-  levels.look_from({&place, 1});
+  levels.set_viewpoints({&place, 1});
   scan();
   EXPECT_GT(changed, 60u);
   for (std::uint32_t i = 0; i < 140; ++i) EXPECT_EQ(levels.of(i) == kOutOfInterest, norm(World::home(i) - place) > kReach) << i;
@@ -180,7 +180,7 @@ Judged judge(Baseline baseline, bool is_smoothed, bool looks, std::uint64_t seed
   for (std::int64_t tick = 0; tick < 4000; ++tick) {
     of.step();
     const Vec3 eyes = of.eyes();
-    if (looks) sender.look_from({&eyes, 1});
+    if (looks) sender.set_viewpoints({&eyes, 1});
     const auto packets = sender.encode(tick, of.truth());
     EXPECT_TRUE(packets);
     for (const Packet& packet : *packets) {
@@ -229,7 +229,7 @@ TEST(LevelsOfDetail, AKeyPacketNamesWhatIsOfInterestAlone) {
   for (std::int64_t tick = 0; tick < 3000; ++tick) {
     of.step();
     const Vec3 eyes = of.eyes();
-    sender.look_from({&eyes, 1});
+    sender.set_viewpoints({&eyes, 1});
     ASSERT_TRUE(sender.encode(tick, of.truth()));
   }
   sender.request_key();
@@ -258,7 +258,7 @@ TEST(LevelsOfDetail, WhatEntersIsNotSmoothedFromWhatNotEverybodyHasShown) {
   bool has_key = false, is_seen = false;
   for (std::int64_t tick = 0; tick < 1500; ++tick) {
     const Vec3& eyes = tick >= 500 && tick < 1000 ? away : between;
-    sender.look_from({&eyes, 1});
+    sender.set_viewpoints({&eyes, 1});
     if (tick == 900) sender.request_key(), bodies[1].pose.position.x = 0.3;
     if (tick == 950) bodies[0].pose.position.x = 8.003;
     const auto packets = sender.encode(tick, {.objects = bodies});
@@ -277,11 +277,11 @@ TEST(LevelsOfDetail, WhatEntersIsNotSmoothedFromWhatNotEverybodyHasShown) {
 
 // ==== in a session ====
 
-constexpr std::uint64_t kWay = 20'000;  // [us]
+constexpr std::uint64_t kDelay = 20'000;  // [us]
 
-sim::LinkOptions way(double loss, std::uint64_t seed) {
+sim::LinkOptions link_options(double loss, std::uint64_t seed) {
   sim::LinkOptions out;
-  out.delay = kWay;
+  out.delay = kDelay;
   out.loss = loss;
   out.seed = seed;
   return out;
@@ -294,17 +294,17 @@ struct Seen {
 /// in   looks  it is signalled from where a client looks
 Seen run(Role role, LossPolicy policy, double loss, bool looks, std::uint64_t seed) {
   const SharedScene scene = world(140);
-  SessionServerOptions options{.sender = options_of(Baseline::previous), .loss = policy, .widening = 1};
+  SessionServerOptions options{.sender = options_of(Baseline::previous), .loss = policy, .max_bound_scale = 1};
   testing::SessionWorld session(scene, options);
   SessionClientOptions client{.role = role};
-  testing::SessionWorld::End& end = session.add(client, way(loss, seed), way(loss, seed + 50));
+  testing::SessionWorld::End& end = session.add(client, link_options(loss, seed), link_options(loss, seed + 50));
   World of(140, seed);
   std::vector<std::vector<RigidSample>> past;
   Seen out;
   for (std::int64_t tick = 0; tick < 5000; ++tick) {
     of.step();
     past.push_back(of.samples);
-    if (looks) end.client->look_from(of.eyes());
+    if (looks) end.client->set_viewpoint(of.eyes());
     EXPECT_TRUE(end.client->submit(session.now, {.position = of.eyes()}, std::nullopt));  // nothing, of an observer
     session.step([&](std::int64_t) { return of.truth(); });
     const std::int64_t s = end.client->shown_tick(session.now);

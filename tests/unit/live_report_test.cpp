@@ -24,7 +24,7 @@ TEST(LiveReport, APortThatCannotBeOpenedHasARemedyOfItsOwn) {
     EXPECT_FALSE(port_failure(cause, 7447).remedy.empty()) << cause;
 }
 
-TEST(LiveReport, EachWayToNoSessionHasARemedyOfItsOwn) {
+TEST(LiveReport, EachCauseOfNoSessionHasARemedyOfItsOwn) {
   const auto remedy = [](LeaveReason reason) { return failure_of({.server = "a:1", .ended = reason}).remedy; };
   EXPECT_NE(remedy(LeaveReason::full).find("--clients"), std::string::npos);
   EXPECT_NE(remedy(LeaveReason::version).find("--version"), std::string::npos);

@@ -199,12 +199,12 @@ TEST(Loads, AreHeldOrRefusedIfTheyDoNotSuitTheScene) {
   EXPECT_STREQ(SceneBuilder().rigid("a", {}, Dof::none).loads({}).build().error().error.rule, "R-STR-19");
 }
 
-TEST(Loads, WidenWithTheOtherBounds) {
+TEST(Loads, ScaleWithTheOtherBounds) {
   const SharedScene scene = make_scene();
   std::size_t packets[2]{};
   for (const int wide : {0, 1}) {
     auto sender = Sender::create(scene).value();
-    if (wide) sender.set_widening(4);
+    if (wide) sender.set_bound_scale(4);
     Pushed world;
     for (std::int64_t tick = 0; tick < 1000; ++tick)
       for (const Packet& packet : testing::all(sender.encode(tick, world.step(tick)))) packets[wide] += packet.substream > 0;
@@ -212,7 +212,7 @@ TEST(Loads, WidenWithTheOtherBounds) {
   EXPECT_LT(2 * packets[1], packets[0]);
 }
 
-TEST(Loads, ADeclarationSurvivesTheWayThroughBytes) {
+TEST(Loads, ADeclarationSurvivesBytes) {
   SceneBuilder builder;
   builder.rigid("a").loads({.force_exp = 7, .users = 3}).declare_bounds({}, {}, {.weber_fraction = 0.2, .force_floor = 1});
   const SharedScene scene = builder.build().value();

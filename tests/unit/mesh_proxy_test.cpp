@@ -196,12 +196,12 @@ TEST(MeshProxy, ThinPlatesAtOneMetrePerSecond) {  // thesis figure 2.6 a
   for (const double thickness : {1e-3, 5e-4, 2e-4, 1e-4}) {
     for (const double friction : {0.0, 0.7}) {
       const Body body(testing::box({0.05, 0.05, 0.5 * thickness}));
-      for (const Vec3 way : {Vec3{0, 0, -1}, Vec3{0.6, 0, -0.8}, Vec3{0.5, 0.5, -std::sqrt(0.5)}}) {
+      for (const Vec3 inward : {Vec3{0, 0, -1}, Vec3{0.6, 0, -0.8}, Vec3{0.5, 0.5, -std::sqrt(0.5)}}) {
         Hand hand(body, {.friction = friction});
-        const Vec3 start = Vec3{0.0013, 0.0017, 0.0013} - 0.005 * way;
+        const Vec3 start = Vec3{0.0013, 0.0017, 0.0013} - 0.005 * inward;
         hand.place(start);
         for (int tick = 1; tick <= 30; ++tick) {
-          const Vec3 probe = start + (1e-3 * tick) * way;
+          const Vec3 probe = start + (1e-3 * tick) * inward;
           const ProxyTouch touch = hand.move(probe);
           ASSERT_GE(touch.proxy.z, 0.5 * thickness) << "popped through at tick " << tick;
           ASSERT_EQ(touch.touched, probe.z < 0.5 * thickness + hand.skin);
@@ -368,14 +368,14 @@ TEST(MeshProxy, RandomWalksNeverCrossAClosedMesh) {
   }
 }
 
-/// A way that takes more sweeps than a call may spend is cut short: still touched and still outside.
-TEST(MeshProxy, WaysThatAreCutShortStayOutside) {
+/// A displacement that takes more sweeps than a call may spend is cut short: still touched and still outside.
+TEST(MeshProxy, DisplacementsThatAreCutShortStayOutside) {
   const Body body(testing::bumpy_ball(0.05, 5, 0.3, 3));
   for (const double radius : {0.0, 0.002}) {
     Random random(9);
     for (int run = 0; run < 300; ++run) {
       Hand hand(body, {.friction = 0.2, .radius = radius});
-      const Vec3 way = testing::random_point(random, 1), start = (0.1 / norm(way)) * way;
+      const Vec3 towards = testing::random_point(random, 1), start = (0.1 / norm(towards)) * towards;
       hand.place(start);
       const Vec3 goal = testing::random_point(random, 0.02);  // deep inside
       for (int i = 0; i < 20; ++i) {

@@ -92,7 +92,7 @@ TEST(ErrorMetrics, MeasuresPoseAndContactForce) {
   EXPECT_NEAR(fidelity.worst_haptic_ratio(), 0.2 / 0.08, 1e-9);
 }
 
-TEST(ErrorMetrics, BoundsWidenWithTheLevelOfDetail) {
+TEST(ErrorMetrics, BoundsScaleWithTheLevelOfDetail) {
   ErrorMetrics fidelity(one_cube(), {.visual_position = 0.006, .visual_rotation = 0.03, .haptic = HapticRule::off});
   TraceFrame frame = pressed(0, 0.1);
   const auto add = [&](double by, double angle, std::uint8_t level) {

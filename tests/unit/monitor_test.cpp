@@ -53,7 +53,7 @@ ServerFigures figures_of_two() {
   live.seat = 2;
   live.round_trip = RoundTrip{.smoothed = 12'500};
   live.loss = 0.25;
-  live.widening = 4;
+  live.bound_scale = 4;
   out.clients[2].state = SessionState::receiving;
   for (const std::uint64_t us : {5u, 60u, 60u, 20'000u}) out.work.add(us);
   out.traffic = {.datagrams_sent = 10, .bytes_sent = 1000, .payload_sent = 300};
@@ -74,7 +74,7 @@ TEST(PrometheusText, CountsAsItsFormatSays) {
            "tactus_clients_limit 3",
            "tactus_client_round_trip_seconds{client=\"1\",role=\"participant\"} 0.0125",
            "tactus_client_loss_ratio{client=\"1\",role=\"participant\"} 0.25",
-           "tactus_client_widening_ratio{client=\"1\",role=\"participant\"} 4",
+           "tactus_client_bound_scale_ratio{client=\"1\",role=\"participant\"} 4",
            "tactus_client_seat{client=\"1\",role=\"participant\"} 2",
            "tactus_joins_refused_total{reason=\"full\"} 3",
            "tactus_sent_bytes_total{layer=\"payload\"} 300",

@@ -85,7 +85,7 @@ struct FloodedServer {
     net::Address at;
     SessionClient session;
     std::uint64_t sent = 0, dropped = 0;
-    Fnv1a heard;  // of everything that the server said to it
+    Fnv1a heard;  // of everything that the server sent to it
     Bytes newest;
   };
 
@@ -106,11 +106,11 @@ struct FloodedServer {
     return true;
   }
   void drain() {
-    while (const auto said = server.poll_datagram(now))
+    while (const auto message = server.poll_datagram(now))
       for (Client& client : clients)
-        if (client.at.key() == said->peer) {
-          for (const std::uint8_t byte : said->bytes) client.heard.add_byte(byte);
-          static_cast<void>(client.session.handle_datagram(now, said->bytes));
+        if (client.at.key() == message->peer) {
+          for (const std::uint8_t byte : message->bytes) client.heard.add_byte(byte);
+          static_cast<void>(client.session.handle_datagram(now, message->bytes));
         }
     while (server.poll_event()) continue;
   }
@@ -127,8 +127,8 @@ struct FloodedServer {
                          0};
       static_cast<void>(client.session.submit(now, device, {}));
       client.session.handle_timeout(now);
-      while (const auto said = client.session.poll_datagram(now)) {
-        client.newest.assign(said->begin(), said->end());
+      while (const auto message = client.session.poll_datagram(now)) {
+        client.newest.assign(message->begin(), message->end());
         ++client.sent;
         client.dropped += to_server(client.at, client.newest) ? 0u : 1u;
       }
@@ -147,7 +147,7 @@ struct FloodedServer {
   std::vector<Client> clients;
 };
 
-/// A hand that shakes so that each of its 1000 samples per second is worth a packet, over a network that loses; then all that was said in a
+/// A hand that shakes so that each of its 1000 samples per second is worth a packet, over a network that loses; then all that was sent in a
 /// second arrives at once.
 TEST(Peers, TheFastestClientIsNeverLimited) {
   FloodedServer world;
@@ -167,9 +167,9 @@ TEST(Peers, TheFastestClientIsNeverLimited) {
     static_cast<void>(session.submit(world.now, device, {}));
     session.handle_timeout(world.now);
     const bool stands_still = tick >= 4000 && tick < 5000;
-    while (const auto said = session.poll_datagram(world.now)) {
+    while (const auto message = session.poll_datagram(world.now)) {
       ++sent;
-      held.emplace_back(said->begin(), said->end());
+      held.emplace_back(message->begin(), message->end());
     }
     if (!stands_still) {
       for (const Bytes& datagram : held) {
@@ -190,15 +190,15 @@ TEST(Peers, FloodsChangeNoDatagramOfOthers) {
   FloodedServer quiet, flooded;
   std::mt19937 random(3);
   const auto flood =
-      [&](std::uint64_t count) {  // of the third client, what it said last, and damaged; of strangers, joins and noise
+      [&](std::uint64_t count) {  // of the third client, what it sent last, and damaged; of strangers, joins and noise
         for (std::uint64_t i = 0; i < count; ++i) {
-          Bytes said = flooded.clients[2].newest;
-          if (said.empty()) continue;
+          Bytes message = flooded.clients[2].newest;
+          if (message.empty()) continue;
           for (std::uint_fast32_t k = random() % 3; k > 0; --k)
-            said[random() % said.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
-          flooded.to_server(flooded.clients[2].at, said);
-          said.resize(random() % 200 + 1);
-          flooded.to_server(at(static_cast<unsigned>(random() % 60'000 + 1)), said);
+            message[random() % message.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
+          flooded.to_server(flooded.clients[2].at, message);
+          message.resize(random() % 200 + 1);
+          flooded.to_server(at(static_cast<unsigned>(random() % 60'000 + 1)), message);
         }
       };
   constexpr std::int64_t kTicks = 6000, kQuiet = 1000;

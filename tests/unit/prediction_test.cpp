@@ -230,7 +230,7 @@ TEST(Prediction, AddsTurnsAboutSeveralAxes) {
       own->hear(0, {place, server}, tick);
       own->correct(kAge);
       const double now = angle_between(own->poses()[0].rotation, server);
-      ASSERT_LE(now, before + 1e-9) << "no way further than to it, in tick " << tick;
+      ASSERT_LE(now, before + 1e-9) << "no farther than to it, in tick " << tick;
       before = now;
       own->step(kAway);
     }

@@ -118,21 +118,21 @@ TEST(Printer, ValuesStandInTheirUnits) {
       "seconds": {"title": "scope", "type": "number", "x-unit": "s", "x-format": ".1f", "x-text": " in {}"},
       "none": {"title": "none", "type": "integer", "x-count": "step", "x-omit": 0},
       "errors": {"title": "error", "type": "object", "x-as": "rows", "properties": {
-        "way_m": {"title": "way", "x-unit": "mm", "x-scale": 1e3, "type": "object", "properties": {
+        "arc_m": {"title": "arc", "x-unit": "mm", "x-scale": 1e3, "type": "object", "properties": {
           "max": {"title": "max", "type": "number", "x-unit": "of the row"},
           "late_s": {"title": "late", "type": "number", "x-unit": "ms", "x-scale": 1e3}}}}},
       "bounds": {"title": "bound", "type": "object", "x-as": "joins", "x-block": "error", "properties": {
-        "way_m": {"title": "way", "type": "number", "x-unit": "mm", "x-scale": 1e3},
+        "arc_m": {"title": "arc", "type": "number", "x-unit": "mm", "x-scale": 1e3},
         "turn_rad": {"title": "turn", "type": "number", "x-unit": "rad"}}},
       "verdict": {"title": "verdict", "type": "string", "x-as": "sentence"}}})");
-  const Json value = Json::parse(R"({"steps": 1, "seconds": 2, "none": 0, "errors": {"way_m": {"max": 0.25, "late_s": 0.004}},
-    "bounds": {"way_m": 0.5, "turn_rad": 1}, "verdict": "Good."})");
+  const Json value = Json::parse(R"({"steps": 1, "seconds": 2, "none": 0, "errors": {"arc_m": {"max": 0.25, "late_s": 0.004}},
+    "bounds": {"arc_m": 0.5, "turn_rad": 1}, "verdict": "Good."})");
   EXPECT_EQ(table_of(value, schema),
             "walk\n"
             "  scope    1 step in 2.0 s\n"
             "\n"
             "error        bound  max  late [ms]\n"
-            "  way [mm]  500 mm  250          4\n"
+            "  arc [mm]  500 mm  250          4\n"
             "\n"
             "Good.\n");
 }

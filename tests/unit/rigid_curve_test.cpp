@@ -29,11 +29,11 @@ using testing::scene_of;
 constexpr std::int64_t kStart = 80, kTicks = 30;  // t_0 and t_N: three quarters of gaps of 40 ticks
 constexpr double kTick = 1e-3;                    // [s]
 
-/// A client of a way, after two updates 40 ticks apart, and a third that finds the object elsewhere.
+/// A client of an interpolation, after two updates 40 ticks apart, and a third that finds the object elsewhere.
 class Client {
  public:
-  explicit Client(Interpolation way, std::uint16_t max_extrapolation = 500) : scene_(scene(max_extrapolation)) {
-    replica_.emplace(*scene_, ReplicaOptions{.interpolation = way}, std::vector<DeformableDecoder*>{});
+  explicit Client(Interpolation interpolation, std::uint16_t max_extrapolation = 500) : scene_(scene(max_extrapolation)) {
+    replica_.emplace(*scene_, ReplicaOptions{.interpolation = interpolation}, std::vector<DeformableDecoder*>{});
     take(before(0));
     take(before(40));
     take(after());
@@ -75,8 +75,8 @@ class Client {
 /// x_o(t) of an equation of the thesis, from i, x_o^0, x_o^1, xdot_o^0 t_N and xdot_o^1 t_N.
 using Equation = std::function<Vec3(double, const Vec3&, const Vec3&, const Vec3&, const Vec3&)>;
 
-void follows(Interpolation way, const Equation& equation) {
-  const Client client(way);
+void follows(Interpolation interpolation, const Equation& equation) {
+  const Client client(interpolation);
   const Vec3 x0 =
       to_pose(RigidPredictor(client.scene()).pose(to_grid(Client::before(40), 40, client.scene().grid).value(), kStart),
               client.scene().grid.position)
@@ -130,8 +130,8 @@ TEST(ClientCurve, OfOneAxisRotationsFollowTheSameEquations) {
 }
 
 TEST(ClientCurve, OnlyHermiteKeepsTheVelocityAtBothEnds) {
-  const auto jump = [](Interpolation way, std::int64_t tick) {
-    const Client client(way);
+  const auto jump = [](Interpolation interpolation, std::int64_t tick) {
+    const Client client(interpolation);
     const auto velocity = [&](std::int64_t from) { return client.shown(from + 1).position - client.shown(from).position; };
     const Vec3 outside = kTick * (tick == kStart ? Client::before(40).velocity : Client::after().velocity);
     return norm(velocity(tick == kStart ? tick : tick - 1) - outside) / norm(outside);
@@ -235,7 +235,7 @@ TEST(Smoothing, RotationsShrinkByTheirAngle) {
 }
 
 /// Eventful motion: what is shown keeps the bounds at every tick and does not jump where it would without smoothing.
-TEST(Smoothing, BoundsHoldOnTheWayAndStepsAreSmall) {
+TEST(Smoothing, BoundsHoldMeanwhileAndStepsAreSmall) {
   RigidTriggers triggers{.visual_position = 0.001, .visual_rotation = 0.02, .haptic = HapticRule::off};
   const auto worst_step = [&](bool is_smoothed, int& packets, std::vector<double>& steps) {
     SceneSpec spec = testing::spec_of(1);

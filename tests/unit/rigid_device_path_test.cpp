@@ -52,7 +52,7 @@ TEST(DevicePath, PacketsActFromTheirTickOn) {
   EXPECT_EQ(path.x(18), 50);
 }
 
-TEST(DevicePath, OvertakenPacketsTakeTheirPlace) {
+TEST(DevicePath, ReorderedPacketsTakeTheirPlace) {
   Path path;
   path.shift(0, 0);
   path.put(1, 1, 0.001);
@@ -103,7 +103,7 @@ TEST(DevicePath, OlderPacesAndPacketsAreForgotten) {
   EXPECT_EQ(path.place(1500)->tick, 1500) << "a pace of the past is not taken";
 }
 
-/// Overtaken by all that is kept: there is no place for it.
+/// Older than all that is kept: there is no place for it.
 TEST(DevicePath, TheOldestOfAFullPathIsNotTaken) {
   Path path;
   path.shift(0, 0);

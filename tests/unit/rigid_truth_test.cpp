@@ -107,7 +107,7 @@ void compare(bool is_smoothed, bool names, bool looks = false) {
   for (std::uint64_t i = 0; i < 8; ++i) {
     const SenderOptions own = options_of(i < 5 ? Baseline::previous : Baseline::acknowledged, 0.3);
     pairs.push_back({Sender::create(scene, own, shared).value(), Sender::create(scene, own).value(), i});
-    if (i == 4) pairs[i].sharing.set_widening(2), pairs[i].alone.set_widening(2);
+    if (i == 4) pairs[i].sharing.set_bound_scale(2), pairs[i].alone.set_bound_scale(2);
   }
   Yard yard(7);
   std::mt19937_64 random(9);
@@ -119,7 +119,7 @@ void compare(bool is_smoothed, bool names, bool looks = false) {
       if (looks && pair.seed > 1) {  // two of them from nowhere
         const double turn = 1e-3 * static_cast<double>(tick) + static_cast<double>(pair.seed / 2);
         const std::vector<Vec3> places{{0.3 * std::sin(turn), 0.3 * std::cos(turn), 0}};
-        pair.sharing.look_from(places), pair.alone.look_from(places);
+        pair.sharing.set_viewpoints(places), pair.alone.set_viewpoints(places);
       }
       const auto sent = pair.sharing.encode_numbered(pair.number, tick, yard.truth(names));
       ASSERT_TRUE(are_equal(sent, pair.alone.encode_numbered(pair.number, tick, yard.truth(false)))) << tick << ' ' << pair.seed;
@@ -213,11 +213,11 @@ TEST(SharedTruth, NarrowerBoundsWakeWhatRestsOutsideThem) {
   SenderOptions options = options_of(Baseline::previous, 0);
   options.triggers.visual_position = 1e-3;
   Sender sender = Sender::create(scene, options).value();
-  sender.set_widening(4);
+  sender.set_bound_scale(4);
   RigidSample body;
   body.pose.position.x = 3e-3;
   for (std::int64_t tick = 0; tick < 10; ++tick) ASSERT_TRUE(testing::all(sender.encode(tick, {.objects = {&body, 1}})).empty());
-  sender.set_widening(1);
+  sender.set_bound_scale(1);
   EXPECT_EQ(testing::all(sender.encode(10, {.objects = {&body, 1}})).size(), 1u);
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 TEST(RigidWork, ADecisionIsFoundByAllThatItDependsOn) {
   RigidWork work(*testing::scene_of(5));
-  const RigidWork::Asked asked{.version = 7, .object = 2, .widening = 1, .early = 0.5};
+  const RigidWork::Asked asked{.version = 7, .object = 2, .bound_scale = 1, .early = 0.5};
   EXPECT_EQ(work.find(1, asked), nullptr);
   work.put(1, asked, {Reason::visual, true});
   ASSERT_NE(work.find(1, asked), nullptr);

@@ -117,13 +117,13 @@ TEST(SealCookies, ProveTheAddressThatTheyWereMadeFor) {
   Cookies cookies = Cookies::create(0).value();
   const Bytes here = bytes_of("192.0.2.1:1"), there = bytes_of("192.0.2.1:2");
   Hellos hellos;
-  EXPECT_EQ(cookies.look(0, here, hellos.bare()).verdict, Verdict::unproven);
+  EXPECT_EQ(cookies.look(0, here, hellos.bare()).verdict, Verdict::unvalidated);
   EXPECT_LT(cookies.answer(here).size(), hellos.bare().size()) << "shorter than what asks for it";
   const Bytes hello = hellos.with(cookies.answer(here));
-  EXPECT_EQ(cookies.look(0, here, hello).verdict, Verdict::proven);
-  EXPECT_EQ(cookies.look(0, there, hello).verdict, Verdict::unproven);
+  EXPECT_EQ(cookies.look(0, here, hello).verdict, Verdict::validated);
+  EXPECT_EQ(cookies.look(0, there, hello).verdict, Verdict::unvalidated);
   Cookies of_another = Cookies::create(0).value();
-  EXPECT_EQ(of_another.look(0, here, hello).verdict, Verdict::unproven);
+  EXPECT_EQ(of_another.look(0, here, hello).verdict, Verdict::unvalidated);
 }
 
 TEST(SealCookies, LastFor30To60Seconds) {
@@ -133,8 +133,8 @@ TEST(SealCookies, LastFor30To60Seconds) {
     const Bytes here = bytes_of("here");
     static_cast<void>(cookies.look(made, here, hellos.bare()));
     const Bytes hello = hellos.with(cookies.answer(here));
-    EXPECT_EQ(cookies.look(made + 30 * kSecond, here, hello).verdict, Verdict::proven) << made;
-    EXPECT_EQ(cookies.look(made + 60 * kSecond, here, hello).verdict, Verdict::unproven) << made;
+    EXPECT_EQ(cookies.look(made + 30 * kSecond, here, hello).verdict, Verdict::validated) << made;
+    EXPECT_EQ(cookies.look(made + 60 * kSecond, here, hello).verdict, Verdict::unvalidated) << made;
   }
 }
 
@@ -143,9 +143,9 @@ TEST(SealCookies, NobodyForLongEndsThemAll) {
   Hellos hellos;
   const Bytes here = bytes_of("here");
   const Bytes hello = hellos.with(cookies.answer(here));
-  EXPECT_EQ(cookies.look(3600 * kSecond, here, hello).verdict, Verdict::unproven);
+  EXPECT_EQ(cookies.look(3600 * kSecond, here, hello).verdict, Verdict::unvalidated);
   Hellos later;
-  EXPECT_EQ(cookies.look(3600 * kSecond, here, later.with(cookies.answer(here))).verdict, Verdict::proven);
+  EXPECT_EQ(cookies.look(3600 * kSecond, here, later.with(cookies.answer(here))).verdict, Verdict::validated);
 }
 
 TEST(SealCookies, EveryPrefixAndEveryBit) {
@@ -153,12 +153,12 @@ TEST(SealCookies, EveryPrefixAndEveryBit) {
   Hellos hellos;
   const Bytes here = bytes_of("here"), hello = hellos.with(cookies.answer(here));
   for (std::size_t size = 0; size < 60; ++size)
-    EXPECT_NE(cookies.look(0, here, std::span(hello).first(size)).verdict, Verdict::proven) << size;
+    EXPECT_NE(cookies.look(0, here, std::span(hello).first(size)).verdict, Verdict::validated) << size;
   constexpr std::size_t kCookie = 13 + 12 + 2 + 32 + 1 + 1;
   for (std::size_t bit = 0; bit < 128; ++bit) {
     Bytes changed = hello;
     changed[kCookie + bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
-    EXPECT_EQ(cookies.look(0, here, changed).verdict, Verdict::unproven) << bit;
+    EXPECT_EQ(cookies.look(0, here, changed).verdict, Verdict::unvalidated) << bit;
   }
 }
 

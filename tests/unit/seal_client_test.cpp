@@ -80,7 +80,7 @@ TEST(SealClient, ManyLossesDoublesAndReversals) {
       return [&random, &held](const Bytes& datagram) {
         std::vector<Bytes> out;
         if (random() % 10 < 3) return out;
-        if (random() % 8 == 0) {  // overtaken by the next
+        if (random() % 8 == 0) {  // after the next
           held.push_back(datagram);
           return out;
         }
@@ -169,7 +169,7 @@ TEST(SealClient, HearsNothingButItsServerBeforeItIsOpen) {
   EXPECT_EQ(pair.error, "");
 }
 
-/// What a server says after its cookie, said by someone else before it.
+/// What a server sends after its cookie, sent by someone else before it.
 TEST(SealClient, AFlightBeforeTheCookieDelaysNothing) {
   std::vector<Bytes> flight;
   SealPair other, quiet, disturbed;
@@ -232,7 +232,7 @@ TEST(SealClient, ReplaysAndForgeriesAreCountedAndDropped) {
   EXPECT_EQ(pair.error, "");
 }
 
-TEST(SealClient, RecordsMayOvertakeButNotByMoreThanTheWindow) {
+TEST(SealClient, RecordsMayBeReorderedButNotByMoreThanTheWindow) {
   SealPair pair;
   pair.run();
   pair.say_up("x");

@@ -239,9 +239,9 @@ TEST(SealUsers, WhoIsRemovedGetsAnAlertAndOthersStay) {
   auto ben = Client::create(key_of("ben", "bb"), anna.now).value();
   const net::Address there = tactus::testing::address("192.0.2.8:4000");
   for (int i = 0; i < 8; ++i) {
-    while (const auto said = ben.poll_datagram()) static_cast<void>(anna.server.open(anna.now, there, *said));
+    while (const auto datagram = ben.poll_datagram()) static_cast<void>(anna.server.open(anna.now, there, *datagram));
     anna.server.work(anna.now);
-    while (const auto said = anna.server.poll_datagram()) static_cast<void>(ben.open(anna.now, said->bytes));
+    while (const auto datagram = anna.server.poll_datagram()) static_cast<void>(ben.open(anna.now, datagram->bytes));
   }
   ASSERT_TRUE(ben.is_open());
   EXPECT_TRUE(anna.server.replace(lab()).empty()) << "the same users again";
@@ -365,7 +365,7 @@ TEST(SealWrongKey, AForgedAlertEndsAndDelaysNothing) {
   quiet.run();
   disturbed.run();
   ASSERT_TRUE(disturbed.client.is_open());
-  EXPECT_FALSE(disturbed.client.is_doubted()) << "the server has proven itself";
+  EXPECT_FALSE(disturbed.client.is_doubted()) << "the server is authenticated";
   EXPECT_EQ(disturbed.now, quiet.now);
   EXPECT_EQ(sent.size(), 3u) << "no datagram more";
   for (int i = 0; i < 100; ++i) disturbed.down(alert);

@@ -38,12 +38,12 @@ net::Address stranger(unsigned number) {
 }
 
 TEST(SealServer, AStrangerGetsACookieAndNothingElse) {
-  const auto said = flights();
-  ASSERT_EQ(said.size(), 4u);  // hello, hello with cookie, keys, data
+  const auto flight = flights();
+  ASSERT_EQ(flight.size(), 4u);  // hello, hello with cookie, keys, data
   SealPair pair;
-  for (std::size_t i = 0; i < said.size(); ++i) {
+  for (std::size_t i = 0; i < flight.size(); ++i) {
     const net::Address from = stranger(static_cast<unsigned>(i));
-    EXPECT_FALSE(pair.server.open(pair.now, from, said[i]));
+    EXPECT_FALSE(pair.server.open(pair.now, from, flight[i]));
     const auto answer = pair.server.poll_datagram();
     EXPECT_EQ(answer.has_value(), i < 2) << i;  // the cookie of another address is none
     if (answer) {
@@ -58,9 +58,9 @@ TEST(SealServer, AStrangerGetsACookieAndNothingElse) {
   EXPECT_EQ(pair.server.counters().strangers, 2u);
 }
 
-/// What is remembered of strangers: nothing, whatever they say.
+/// What is remembered of strangers: nothing, whatever they send.
 TEST(SealServer, AHundredThousandDatagramsOfStrangersLeaveNothing) {
-  const auto said = flights();
+  const auto flight = flights();
   SealPair pair;
   pair.run();
   std::mt19937 random(1);
@@ -79,20 +79,20 @@ TEST(SealServer, AHundredThousandDatagramsOfStrangersLeaveNothing) {
           datagram[12] = static_cast<std::uint8_t>(datagram.size() - 13);
         }
       } else {
-        datagram = said[random() % said.size()];
+        datagram = flight[random() % flight.size()];
         for (unsigned k = random() % 4; k > 0; --k) datagram[random() % datagram.size()] = static_cast<std::uint8_t>(random());
         if (random() % 8 == 0) datagram.resize(random() % (2 * datagram.size()));
       }
       const net::Address from = stranger(static_cast<unsigned>(random()));
       EXPECT_FALSE(pair.server.open(pair.now, from, datagram));
-      std::size_t said_back = 0;
+      std::size_t sent_back = 0;
       while (const auto answer = pair.server.poll_datagram()) {
         EXPECT_EQ(answer->to, from);
-        said_back += answer->bytes.size();
+        sent_back += answer->bytes.size();
       }
-      ASSERT_LE(said_back, 3 * datagram.size());
+      ASSERT_LE(sent_back, 3 * datagram.size());
       heard += datagram.size();
-      answered += said_back;
+      answered += sent_back;
       pair.now += 100;
       if (i % 10 == 0) pair.server.work(pair.now);
     }
@@ -113,19 +113,19 @@ TEST(SealServer, AHundredThousandDatagramsOfStrangersLeaveNothing) {
 
 /// The same from the address of a client that is there: as an attacker would who forges its address.
 TEST(SealServer, ForgedDatagramsOfAClientEndNothing) {
-  const auto said = flights();
+  const auto flight = flights();
   SealPair pair;
   pair.run();
   std::mt19937 random(2);
   for (unsigned i = 0; i < 50'000; ++i) {
-    Bytes datagram = said[random() % said.size()];
+    Bytes datagram = flight[random() % flight.size()];
     for (unsigned k = random() % 4; k > 0; --k) datagram[random() % datagram.size()] = static_cast<std::uint8_t>(random());
     if (random() % 4 == 0) datagram[4] = 1;  // the epoch of sealed records
-    std::size_t said_back = 0;
+    std::size_t sent_back = 0;
     EXPECT_FALSE(pair.server.open(pair.now, pair.at, datagram));
-    while (const auto answer = pair.server.poll_datagram()) said_back += answer->bytes.size();
-    ASSERT_LE(said_back, 3 * datagram.size());
-    pair.server.work(pair.now += 200);  // as many as a client may say
+    while (const auto answer = pair.server.poll_datagram()) sent_back += answer->bytes.size();
+    ASSERT_LE(sent_back, 3 * datagram.size());
+    pair.server.work(pair.now += 200);  // as many as a client may send
   }
   EXPECT_EQ(pair.server.counters().limited, 0u);
   EXPECT_EQ(pair.server.peers(), 1u);
@@ -135,9 +135,9 @@ TEST(SealServer, ForgedDatagramsOfAClientEndNothing) {
 }
 
 TEST(SealServer, EveryFirstDatagramGetsLittle) {
-  const auto said = flights();
+  const auto flight = flights();
   SealPair pair;
-  for (const Bytes& whole : said) {
+  for (const Bytes& whole : flight) {
     for (std::size_t size = 0; size <= whole.size(); ++size) {
       Bytes datagram(whole.begin(), whole.begin() + static_cast<long>(size));
       if (size >= 13) {
@@ -233,7 +233,7 @@ TEST(SealServer, FloodsReachNobodyElse) {
   EXPECT_EQ(crowd.server.limited_of(1), 0u);
 }
 
-/// Who has proven an address can still make a server compare cookies, but not often; and comes in.
+/// Who has validated an address can still make a server compare cookies, but not often; and comes in.
 TEST(SealServer, AHandshakeIsFewDatagrams) {
   SealPair pair;
   Bytes with_cookie;

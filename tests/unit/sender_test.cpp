@@ -124,7 +124,7 @@ TEST(Sender, SaysNothingOfWhatHasNoNewShape) {
 }
 
 /// What a receiver of all packets shows is within the bounds times their factor; a narrower one holds from the next tick on.
-TEST(Sender, WidenedBoundsHoldAndAskForLess) {
+TEST(Sender, ScaledBoundsHoldAndNeedLess) {
   const SharedScene scene = testing::scene_of_every_kind(kSquares);
   const SenderOptions options;
   std::array<std::size_t, 4> bytes{}, steps{1, 4, 8, 1};
@@ -134,7 +134,7 @@ TEST(Sender, WidenedBoundsHoldAndAskForLess) {
   double worst = 0;  // error of a position over its given bound
   for (std::int64_t tick = 0; tick < 2000; ++tick) {
     const auto phase = static_cast<std::size_t>(tick / 500);
-    if (tick % 500 == 0) sender.set_widening(static_cast<double>(steps[phase]));
+    if (tick % 500 == 0) sender.set_bound_scale(static_cast<double>(steps[phase]));
     Frame frame = world.step();
     const Truth truth = frame.truth();
     for (const Packet& packet : all(sender.encode(tick, truth))) {
@@ -169,11 +169,11 @@ TEST(Sender, WidenedBoundsHoldAndAskForLess) {
   EXPECT_GT(bytes[3], bytes[1]);
 }
 
-TEST(Sender, AWideningIsAtLeastOne) {
+TEST(Sender, ABoundScaleIsAtLeastOne) {
   const SharedScene scene = testing::scene_of_every_kind(kSquares);
   const auto hashes_with = [&](double factor) {
     auto sender = Sender::create(scene).value();
-    sender.set_widening(factor);
+    sender.set_bound_scale(factor);
     World world;
     for (std::int64_t tick = 0; tick < 200; ++tick) {
       Frame frame = world.step();
@@ -249,7 +249,7 @@ TEST(Sender, AJumpAcrossTheWholeGridTakesTwoUpdates) {
     for (const Packet& packet : all(sender.encode(tick, {.objects = {&body, 1}}))) ASSERT_TRUE(receiver.push(packet.bytes));
     const double error = norm(to_pose(receiver.replica().pose(0, tick), scene->grid.position).position - body.pose.position);
     if (tick == 2) {
-      EXPECT_NEAR(error, 488.6, 1) << "half of the way";
+      EXPECT_NEAR(error, 488.6, 1) << "half of the distance";
     } else {
       EXPECT_LE(error, 2e-6) << tick;
     }

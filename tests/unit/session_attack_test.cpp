@@ -59,7 +59,7 @@ struct Attacked {
   struct Client {
     SessionClient session;
     std::uint64_t epoch = 0, epochs = 0, sent = 0, closed = 0;
-    Fnv1a heard;  // of all that the server said to it
+    Fnv1a heard;  // of all that the server sent to it
   };
 
   Attacked() : displacements(3 * kSide * kSide) {
@@ -68,25 +68,25 @@ struct Attacked {
       clients.back().session.open(now, 7 + i);
     }
   }
-  void say(std::uint64_t from, const Bytes& datagram) {
-    ++said;
+  void send(std::uint64_t from, const Bytes& datagram) {
+    ++sent;
     taken += server.handle_datagram(now, from, datagram) ? 1u : 0u;
     drain();
   }
   void drain() {
-    while (const auto said = server.poll_datagram(now)) {
-      if (said->peer == 0 || said->peer > clients.size()) {
-        to_strangers += said->bytes.size();
+    while (const auto message = server.poll_datagram(now)) {
+      if (message->peer == 0 || message->peer > clients.size()) {
+        to_strangers += message->bytes.size();
         continue;
       }
-      Client& client = clients[said->peer - 1];
-      const auto read = read_datagram(said->bytes, Direction::down);
-      ASSERT_TRUE(read) << "what the server says can be read";
+      Client& client = clients[message->peer - 1];
+      const auto read = read_datagram(message->bytes, Direction::down);
+      ASSERT_TRUE(read) << "what the server sends can be read";
       if (const auto* welcome = std::get_if<Welcome>(&*read))
         client.epochs += std::exchange(client.epoch, welcome->epoch) != welcome->epoch ? 1u : 0u;
-      for (const std::uint8_t byte : said->bytes) client.heard.add_byte(byte);
+      for (const std::uint8_t byte : message->bytes) client.heard.add_byte(byte);
       ++client.sent;
-      static_cast<void>(client.session.handle_datagram(now, said->bytes));
+      static_cast<void>(client.session.handle_datagram(now, message->bytes));
     }
     while (server.poll_event()) continue;
   }
@@ -113,10 +113,10 @@ struct Attacked {
       device.position = {0.05 * std::sin(0.004 * static_cast<double>(tick) + static_cast<double>(i)), 0, 0};
       static_cast<void>(client.session.submit(now, device, {}));
       client.session.handle_timeout(now);
-      while (const auto said = client.session.poll_datagram(now)) {
-        Bytes datagram(said->begin(), said->end());
+      while (const auto message = client.session.poll_datagram(now)) {
+        Bytes datagram(message->begin(), message->end());
         if (i + 1 == kBad) overheard[next++ % overheard.size()] = datagram;
-        say(i + 1, datagram);
+        send(i + 1, datagram);
       }
       while (const auto event = client.session.poll_event()) client.closed += event->kind == ClientEvent::Kind::closed ? 1u : 0u;
     }
@@ -126,7 +126,7 @@ struct Attacked {
   }
   Client& bad() { return clients[kBad - 1]; }
 
-  std::uint64_t now = 1'000'000, said = 0, taken = 0, to_strangers = 0;  // datagrams to the server; [bytes]
+  std::uint64_t now = 1'000'000, sent = 0, taken = 0, to_strangers = 0;  // datagrams to the server; [bytes]
   std::vector<RigidSample> objects{kObjects};
   std::vector<float> displacements;
   SessionServer server = SessionServer::create(scene(), {.clients = 6}, 42, now).value();
@@ -135,7 +135,7 @@ struct Attacked {
   std::size_t next = 0;
 };
 
-/// A datagram with one part that is well formed and says anything.
+/// A datagram with one part that is well formed and holds anything.
 Bytes any_part(Random& random, std::uint64_t epoch) {
   DatagramWriter writer(Direction::up);
   writer.begin(random() % 20'000);
@@ -175,16 +175,16 @@ Bytes any_part(Random& random, std::uint64_t epoch) {
 
 Bytes join_of(Random& random) {
   DatagramWriter writer(Direction::up);
-  const auto said = writer.write(Join{.role = random() % 2 == 0 ? Role::participant : Role::observer,
+  const auto message = writer.write(Join{.role = random() % 2 == 0 ? Role::participant : Role::observer,
                                       .nonce = random(),
                                       .state_limit = random() >> random() % 64,
                                       .header_limit = random() >> random() % 64,
                                       .token = random() % 2,
                                       .seat = static_cast<std::uint8_t>(random() % 4)});
-  return {said.begin(), said.end()};
+  return {message.begin(), message.end()};
 }
 
-/// What the bad client said before, damaged, cut, prolonged or as it was, with a check that holds; or noise.
+/// What the bad client sent before, damaged, cut, prolonged or as it was, with a check that holds; or noise.
 Bytes damaged(Random& random, const Attacked& world, std::uint64_t epoch) {
   Bytes out = world.overheard[random() % world.overheard.size()];
   if (out.size() < 6) return {};
@@ -205,16 +205,16 @@ void go_bad(Attacked& world, Random& random) {
     world.bad().session.open(world.now, random());  // it was thrown out
   for (int i = 0; i < 24; ++i) {
     const std::uint64_t epoch = world.bad().epoch, what = random() % 8;
-    if (what < 4) world.say(kBad, damaged(random, world, epoch));
-    else if (what < 7) world.say(kBad, any_part(random, epoch));
-    else if (random() % 50 == 0) world.say(kBad, join_of(random));
+    if (what < 4) world.send(kBad, damaged(random, world, epoch));
+    else if (what < 7) world.send(kBad, any_part(random, epoch));
+    else if (random() % 50 == 0) world.send(kBad, join_of(random));
   }
 }
 
 void send_as_strangers(Attacked& world, Random& random) {
   for (int i = 0; i < 24; ++i) {
     const std::uint64_t from = 100 + random() % 50, what = random() % 4;
-    world.say(from, what == 0   ? join_of(random)
+    world.send(from, what == 0   ? join_of(random)
                     : what == 1 ? any_part(random, random())
                                 : damaged(random, world, world.bad().epoch));
   }
@@ -232,7 +232,7 @@ class SessionAttack : public ::testing::TestWithParam<std::pair<const char*, Att
 TEST_P(SessionAttack, WhatHonestClientsHearIsTheSame) {
   constexpr std::int64_t kTicks = 3000, kQuiet = 1000;
   const Attack& attack = GetParam().second;
-  std::uint64_t said = 0, taken = 0, lives = 0;
+  std::uint64_t sent = 0, taken = 0, lives = 0;
   Attacked quiet;
   for (std::int64_t tick = 0; tick < kTicks; ++tick) quiet.step(tick);
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
@@ -249,12 +249,12 @@ TEST_P(SessionAttack, WhatHonestClientsHearIsTheSame) {
       EXPECT_EQ(attacked.clients[i].closed, 0u);
       EXPECT_EQ(attacked.server.status(static_cast<std::uint16_t>(i)).traffic.wrong_states, 0u);
     }
-    said += attacked.said;
+    sent += attacked.sent;
     lives += attacked.bad().epochs;
     taken += attacked.taken;
-    EXPECT_LE(attacked.to_strangers, attacked.said * 76) << "no more than they said";
+    EXPECT_LE(attacked.to_strangers, attacked.sent * 76) << "no more than they sent";
   }
-  RecordProperty("datagrams", std::to_string(said));
+  RecordProperty("datagrams", std::to_string(sent));
   RecordProperty("taken", std::to_string(taken));
   RecordProperty("sessions", std::to_string(lives));
   if (GetParam().first != std::string("strangers")) {

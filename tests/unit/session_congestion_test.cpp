@@ -42,15 +42,15 @@ struct Ticks {
   int changes = 0;
 };
 
-TEST(Congestion, AFreeWayWidensNothing) {
+TEST(Congestion, AFreeLinkScalesNothing) {
   Ticks run;
   run.periods(100, 0, 0);
   EXPECT_FALSE(run.congestion.waits());
   run.periods(100, 2, 25);
   EXPECT_FALSE(run.congestion.waits()) << "a tenth is not more than a tenth";
-  EXPECT_EQ(run.congestion.widening(), 1);
+  EXPECT_EQ(run.congestion.bound_scale(), 1);
   EXPECT_EQ(run.congestion.so_far().time, 0u);
-  EXPECT_EQ(run.congestion.so_far().widest, 1);
+  EXPECT_EQ(run.congestion.so_far().largest, 1);
   EXPECT_EQ(run.changes, 0);
 }
 
@@ -58,67 +58,67 @@ TEST(Congestion, WhatWaitsBrieflyTakesOthersAlong) {
   Ticks run;
   run.periods(100, 25, 19);  // of each 20 ticks
   EXPECT_TRUE(run.congestion.waits());
-  EXPECT_EQ(run.congestion.widening(), 1) << "nothing waits for long";
+  EXPECT_EQ(run.congestion.bound_scale(), 1) << "nothing waits for long";
   run.periods(100, 5, 99);
-  EXPECT_EQ(run.congestion.widening(), 1);
+  EXPECT_EQ(run.congestion.bound_scale(), 1);
   run.periods(1, 4, 124);
-  EXPECT_EQ(run.congestion.widening(), std::sqrt(2.0));
+  EXPECT_EQ(run.congestion.bound_scale(), std::sqrt(2.0));
 }
 
 TEST(Congestion, AShapeThatWaitsIsNeverShown) {
   Ticks run;
   run.periods(4, 50, 1, true);  // of 10 ticks one: every second shape
-  EXPECT_EQ(run.congestion.widening(), 4);
+  EXPECT_EQ(run.congestion.bound_scale(), 4);
   run.periods(1, 2, 1, true);  // two of 25
-  EXPECT_EQ(run.congestion.widening(), 4) << "neither calm nor congested";
+  EXPECT_EQ(run.congestion.bound_scale(), 4) << "neither calm nor congested";
   run.periods(1, 1, 0, true);
-  EXPECT_EQ(run.congestion.widening(), 2 * std::sqrt(2.0));
+  EXPECT_EQ(run.congestion.bound_scale(), 2 * std::sqrt(2.0));
 }
 
 TEST(Congestion, SilenceSaysNothing) {
   Ticks run;
   run.periods(6, 1, 500);
-  const double widest = run.congestion.widening();
-  EXPECT_GT(widest, 7);
+  const double largest = run.congestion.bound_scale();
+  EXPECT_GT(largest, 7);
   run.periods(1, 1, 0);
   for (unsigned tick = 0; tick < 60'000; ++tick) run.congestion.tick(false, false, run.now += 1000);
-  const double silent = run.congestion.widening();
-  EXPECT_GT(silent, widest / 1.5) << "no answer came but in the first period";
+  const double silent = run.congestion.bound_scale();
+  EXPECT_GT(silent, largest / 1.5) << "no answer came but in the first period";
   run.periods(6, 0, 0);
-  EXPECT_LT(run.congestion.widening(), silent);
+  EXPECT_LT(run.congestion.bound_scale(), silent);
 }
 
-TEST(Congestion, WidensByStepsToItsLimit) {
+TEST(Congestion, ScalesByStepsToItsLimit) {
   for (const double most : {1.0, 1.4, 2.0, 8.0, 64.0}) {
     Ticks run(most);
     run.periods(1, 1, 101);
-    EXPECT_EQ(run.congestion.widening(), most < 1.5 ? 1 : std::sqrt(2.0)) << most;
+    EXPECT_EQ(run.congestion.bound_scale(), most < 1.5 ? 1 : std::sqrt(2.0)) << most;
     run.periods(30, 1, 500);
-    EXPECT_EQ(run.congestion.widening(), most < 1.5 ? 1 : most);
-    EXPECT_EQ(run.congestion.so_far().widest, run.congestion.widening());
+    EXPECT_EQ(run.congestion.bound_scale(), most < 1.5 ? 1 : most);
+    EXPECT_EQ(run.congestion.so_far().largest, run.congestion.bound_scale());
   }
 }
 
 TEST(Congestion, NarrowsAfterEachCalmPeriod) {
   Ticks run;
   run.periods(2, 1, 500);
-  EXPECT_EQ(run.congestion.widening(), 2);
+  EXPECT_EQ(run.congestion.bound_scale(), 2);
   run.periods(1, 0, 0);
-  EXPECT_EQ(run.congestion.widening(), std::sqrt(2.0));
+  EXPECT_EQ(run.congestion.bound_scale(), std::sqrt(2.0));
   run.periods(8, 5, 60);  // neither calm nor congested
-  EXPECT_EQ(run.congestion.widening(), std::sqrt(2.0));
+  EXPECT_EQ(run.congestion.bound_scale(), std::sqrt(2.0));
   run.periods(1, 5, 50);
-  EXPECT_EQ(run.congestion.widening(), 1);
+  EXPECT_EQ(run.congestion.bound_scale(), 1);
   EXPECT_EQ(run.changes, 4);
-  EXPECT_EQ(run.congestion.so_far().widest, 2);
+  EXPECT_EQ(run.congestion.so_far().largest, 2);
   EXPECT_EQ(run.congestion.so_far().time, (1 + 10) * kPeriod);
 }
 
 /// How many calm periods pass until a step narrower.
 unsigned patience(Ticks& run) {
-  const double before = run.congestion.widening();
+  const double before = run.congestion.bound_scale();
   unsigned out = 0;
-  for (; run.congestion.widening() == before && out < 1000; ++out) run.periods(1, 0, 0);
+  for (; run.congestion.bound_scale() == before && out < 1000; ++out) run.periods(1, 0, 0);
   return out;
 }
 
@@ -140,10 +140,10 @@ TEST(Congestion, ANewEpochBeginsAtItsBounds) {
   const std::uint64_t before = run.congestion.so_far().time;
   EXPECT_EQ(before, 3 * kPeriod);
   run.congestion.begin(run.now);
-  EXPECT_EQ(run.congestion.widening(), 1);
+  EXPECT_EQ(run.congestion.bound_scale(), 1);
   run.periods(4, 0, 0);
   EXPECT_EQ(run.congestion.so_far().time, before);
-  EXPECT_EQ(run.congestion.so_far().widest, 4);
+  EXPECT_EQ(run.congestion.so_far().largest, 4);
 }
 
 // ==== session loss bursts ====
@@ -234,7 +234,7 @@ TEST(LossBursts, WhateverComesItIsWithinItsLimit) {
 // ==== session resends ====
 
 constexpr std::uint64_t kMillisecond = 1000;                                           // [us]
-constexpr Resends::Latest kShapes{.rigid = 400'000, .shape = 120'000, .way = 20'000};  // [us]
+constexpr Resends::Latest kShapes{.rigid = 400'000, .shape = 120'000, .one_way = 20'000};  // [us]
 
 struct Sent {
   explicit Sent(std::size_t size = 40, std::size_t of = 2) : bytes(size, 7), substream(of) {}
@@ -326,7 +326,7 @@ TEST(Resends, KnowWhenTheRigidObjectsMustBeginAnew) {
   renewed.settle_rigid(2);
   EXPECT_EQ(renewed.next(390 * kMillisecond, kShapes), nullptr);
   EXPECT_FALSE(renewed.is_broken());
-  Resends full(0);  // 64 KiB: what gives way has not arrived
+  Resends full(0);  // 64 KiB: what is dropped has not arrived
   for (std::uint64_t n = 1; n <= 65; ++n) Sent(1000, 0).keep(full, n, n, 0);
   EXPECT_FALSE(full.is_broken());
   Sent(1000, 0).keep(full, 66, 66, 0);
@@ -364,7 +364,7 @@ TEST(Resends, FragmentsGoByThemselves) {
   EXPECT_EQ(resends.next(kMillisecond, kShapes), nullptr);
 }
 
-/// Nothing is allocated, what gives way never goes, and bytes are those of their packets.
+/// Nothing is allocated, what is dropped never goes, and bytes are those of their packets.
 TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
   Resends resends(0);
   std::mt19937_64 random(1);
@@ -383,7 +383,7 @@ TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
     }
     while (const auto* copy = random() % 4 ? resends.next(now, kShapes) : nullptr) {
       ASSERT_GT(copy->number + 57, number) << "56 have room";
-      ASSERT_LE(now + kShapes.way, copy->time + 120'000);
+      ASSERT_LE(now + kShapes.one_way, copy->time + 120'000);
       ASSERT_TRUE(
           std::ranges::all_of(resends.bytes(*copy), [&](auto b) { return b == static_cast<std::uint8_t>(copy->number); }));
       resends.sent(*copy, number, now);

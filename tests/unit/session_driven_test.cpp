@@ -38,18 +38,18 @@ struct DeviceEnds {
     const double t = 1e-3 * static_cast<double>(tick);
     const DeviceSample sample{.position = {0.05 * std::sin(6 * t), 0.02 * std::sin(11 * t), 0}, .orientation = {}};
     EXPECT_TRUE(client.submit(now, tick, truth.of(tick, sample, {})));
-    say(client, up, 20 * kMillisecond);
+    send(client, up, 20 * kMillisecond);
     hear(server, up, Direction::up);
     if (const auto change = pace.step(tick, tick - 20)) {  // known to both at once
       server.path->shift(change->from, change->offset);
       client.path->shift(change->from, change->offset);
     }
     server.path->pass(tick);
-    say(server, down, 20 * kMillisecond);
+    send(server, down, 20 * kMillisecond);
     hear(client, down, Direction::down);
   }
 
-  void say(Exchange& from, std::multimap<std::uint64_t, Bytes>& to, std::uint64_t delay) {
+  void send(Exchange& from, std::multimap<std::uint64_t, Bytes>& to, std::uint64_t delay) {
     while (const auto datagram = from.poll(now, false, [](DatagramWriter&, std::uint64_t) { return false; })) {
       if (static_cast<double>(random() % 1000) < 1000 * loss) continue;
       to.emplace(now + delay + random() % (4 * kMillisecond), Bytes(datagram->begin(), datagram->end()));
@@ -72,7 +72,7 @@ struct DeviceEnds {
   std::uint64_t now = kMillisecond;
 };
 
-/// Whatever is lost, late or overtaken: a round trip later the client knows where the device was for the server, to the bit.
+/// Whatever is lost, late or reordered: a round trip later the client knows where the device was for the server, to the bit.
 TEST(Driven, BothEndsKnowTheSamePath) {
   for (const double loss : {0.0, 0.05, 0.3}) {
     DeviceEnds ends(loss);

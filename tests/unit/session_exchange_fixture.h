@@ -102,7 +102,7 @@ struct Ends {
   void give(const std::vector<Bytes>& datagrams) {
     for (const Bytes& bytes : datagrams) EXPECT_TRUE(hear(*client, bytes));
   }
-  /// The client says what it has, and the server hears it.
+  /// The client sends what it has, and the server hears it.
   void answer() {
     now += 10 * kMillisecond;
     for (const Bytes& bytes : drain(*client)) EXPECT_TRUE(hear(*server, bytes));
@@ -124,7 +124,7 @@ struct Ends {
   std::unique_ptr<Exchange> server = std::make_unique<Exchange>(Direction::down, kEpoch, now);
   std::unique_ptr<Exchange> client = std::make_unique<Exchange>(Direction::up, kEpoch, now);
   std::vector<std::size_t> others;  // types of the parts that an end handed on
-  Result<void> other;               // what is said to them
+  Result<void> other;               // what is sent to them
 };
 
 }  // namespace tactus::testing

@@ -29,11 +29,11 @@ void exchange(Ends& ends, int ticks) {
   }
 }
 
-/// The server hears what the client has to say after each datagram.
+/// The server hears what the client has to send after each datagram.
 void give_and_answer(Ends& ends, const std::vector<Bytes>& down) {
   for (const Bytes& bytes : down) {
     EXPECT_TRUE(ends.hear(*ends.client, bytes));
-    for (const Bytes& said : ends.drain(*ends.client)) EXPECT_TRUE(ends.hear(*ends.server, said));
+    for (const Bytes& datagram : ends.drain(*ends.client)) EXPECT_TRUE(ends.hear(*ends.server, datagram));
   }
 }
 
@@ -113,7 +113,7 @@ TEST(ExchangeFragments, ALostFragmentComesAgainAlone) {
 }
 
 /// An acknowledgement reports 65 numbers: one of a packet in more fragments than that must go before all have come.
-TEST(ExchangeFragments, APacketOfManyFragmentsIsAcknowledgedOnTheWay) {
+TEST(ExchangeFragments, APacketOfManyFragmentsIsAcknowledgedMeanwhile) {
   Ends ends({.squares = 160, .count = 1, .noise = 2e-2}, 0);
   ends.submit();
   const auto down = ends.drain(*ends.server);

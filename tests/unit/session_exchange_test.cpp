@@ -57,7 +57,7 @@ TEST(Exchange, OldAndDoubledDatagramsAreRefused) {
     for (const Bytes& bytes : ends.drain(*ends.server)) all.push_back(bytes);
   }
   ASSERT_EQ(all.size(), 20u);
-  for (std::size_t i = 2; i < 20; i += 2) std::swap(all[i - 1], all[i]);  // each overtakes another
+  for (std::size_t i = 2; i < 20; i += 2) std::swap(all[i - 1], all[i]);  // each comes before an older one
   ends.give(all);
   const Traffic before = ends.client->traffic();
   for (const Bytes& bytes : all) {
@@ -321,7 +321,7 @@ std::pair<std::set<std::int64_t>, std::set<std::int64_t>> shapes_over(std::uint6
   return {made, got};
 }
 
-TEST(Exchange, LostShapesComeAgainWhereTheWayIsShort) {
+TEST(Exchange, LostShapesComeAgainWhereTheDelayIsShort) {
   const auto missing = [](std::uint64_t trip, bool layered) {
     const auto [made, got] = shapes_over(trip, layered);
     EXPECT_GT(made.size(), 300u);
@@ -370,7 +370,7 @@ struct Alone {
   Exchange client{Direction::up, kEpoch, 0};
 };
 
-TEST(Exchange, AnOvertakenPacketIsNotHashedThoughItIsOfTheSameTick) {
+TEST(Exchange, AReorderedPacketIsNotHashedThoughItIsOfTheSameTick) {
   Alone alone;
   alone.hear(60, {0xfa, 0xb7, 0x82, 0xeb, 0xe4, 0xc0});
   alone.hear(66, {0x37, 0x37, 0x30, 0xf6, 0xc0, 0xce, 0x84, 0xba});  // both build on 60, at tick 10

@@ -16,14 +16,14 @@
 
 namespace tactus::testing {
 
-/// Everything that was said is kept, so that tests can look at it.
+/// Everything that was sent is kept, so that tests can look at it.
 class SessionWorld {
  public:
   struct End {
     std::unique_ptr<SessionClient> client;
     std::unique_ptr<sim::Link> up, down;
     std::vector<ClientEvent> events;
-    bool silent = false;      // the program has died: it neither hears nor says anything
+    bool silent = false;      // the program has died: it neither hears nor sends anything
     std::uint64_t clock = 0;  // [us] that of the client is ahead of the server's
     std::uint64_t peer = 0;   // its address
   };

@@ -143,8 +143,8 @@ TEST(Fragments, FourPacketsAtATimeAndTheOldestGoesFirst) {
   expect_whole(cuts[1].give(fragments, 2), cuts[1]);
 }
 
-/// What was acknowledged of a packet that gave way is gone: were another fragment of it kept, the sender would think that all are here.
-TEST(Fragments, APacketThatGaveWayNeverComesBack) {
+/// What was acknowledged of a packet that was dropped is forgotten: were another fragment of it kept, the sender would think that all are here.
+TEST(Fragments, APacketThatWasDroppedNeverComesBack) {
   std::mt19937_64 random(5);
   Fragments fragments(3 * kFragmentSize);
   std::set<std::pair<std::uint64_t, std::uint64_t>> gone, held;

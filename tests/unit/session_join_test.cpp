@@ -9,7 +9,7 @@ namespace {
 
 JoinResult join(const JoinCase& of) { return run_join(of).value(); }
 
-/// 1.3 MB at 10 Mbit/s and 200 ms: the line alone takes 1.1 s, what joins before the first piece 0.4 s, or 0.2 s where the seal has proven
+/// 1.3 MB at 10 Mbit/s and 200 ms: the line alone takes 1.1 s, what joins before the first piece 0.4 s, or 0.2 s where the seal has validated
 /// the address.
 TEST(SessionJoin, FollowsALongFastLine) {
   const JoinCase line{.round_trip = 200'000, .rate = 10e6};

@@ -100,7 +100,7 @@ SharedScene many_bodies() {
   return builder.baselines(64).build().value();
 }
 
-/// Bodies on circles whose way turns back at different times, until `rest` from when on they stand.
+/// Bodies on circles whose motion turns back at different times, until `rest` from when on they stand.
 std::vector<RigidSample> circling(std::int64_t tick, std::int64_t rest) {
   std::vector<RigidSample> out(kBodies);
   const double t = 1e-3 * static_cast<double>(std::min(tick, rest));

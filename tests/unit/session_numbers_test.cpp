@@ -20,10 +20,10 @@ struct Report {
   std::vector<std::uint64_t> arrived, lost;
 };
 
-Report report(SentNumbers& sent, const Acknowledgement& said, std::uint64_t now) {
+Report report(SentNumbers& sent, const Acknowledgement& ack, std::uint64_t now) {
   Report out;
   EXPECT_TRUE(sent.acknowledge(
-      said, now, [&](std::uint64_t n) { out.arrived.push_back(n); }, [&](std::uint64_t n) { out.lost.push_back(n); }));
+      ack, now, [&](std::uint64_t n) { out.arrived.push_back(n); }, [&](std::uint64_t n) { out.lost.push_back(n); }));
   return out;
 }
 
@@ -45,9 +45,9 @@ TEST(SentNumbers, WhatWasNeverSentIsRefused) {
   EXPECT_FALSE(sent.acknowledge({1, 0, kAllMissing}, 1, nothing, nothing));
   sent.send(0);
   for (const int newest : {0, 2, 3, 30000, 65535}) {
-    const auto said = sent.acknowledge({static_cast<std::uint16_t>(newest), 0, kAllMissing}, 1, nothing, nothing);
-    ASSERT_FALSE(said) << newest;
-    EXPECT_STREQ(said.error().rule, "R-SES-6");
+    const auto done = sent.acknowledge({static_cast<std::uint16_t>(newest), 0, kAllMissing}, 1, nothing, nothing);
+    ASSERT_FALSE(done) << newest;
+    EXPECT_STREQ(done.error().rule, "R-SES-6");
   }
   EXPECT_EQ(report(sent, {1, 0, 0}, 1).arrived.size(), 1u) << "what lies below 1 does not count";
 }
@@ -82,41 +82,41 @@ TEST(SentNumbers, TheRoundTripLeavesOutWhatTheOtherEndHeld) {
   EXPECT_EQ(sent.sample(), std::nullopt) << "nor by what was acknowledged before";
 }
 
-/// Both ends over a way that loses and delays: what is said to be lost was, and the fraction is right.
+/// Both ends over a link that loses and delays: what is reported lost was, and the fraction is right.
 TEST(SentNumbers, LossIsFoundOut) {
   SentNumbers sent;
   ReceivedNumbers received;
   std::mt19937_64 random(5);
-  std::multimap<std::uint64_t, std::uint64_t> on_the_way;
+  std::multimap<std::uint64_t, std::uint64_t> in_flight;
   std::multimap<std::uint64_t, Acknowledgement> back;
-  std::set<std::uint64_t> dropped, said_lost;
+  std::set<std::uint64_t> dropped, reported_lost;
   std::size_t arrived = 0, wrong = 0;
   for (std::uint64_t now = 0; now < 60'000'000; now += 1000) {
     if (now % 5000 == 0) {
       const std::uint64_t number = sent.next().value();
       sent.send(now);
       if (random() % 10 == 0) dropped.insert(number);
-      else on_the_way.emplace(now + 20000 + random() % 5000, number);
+      else in_flight.emplace(now + 20000 + random() % 5000, number);
     }
-    for (; !on_the_way.empty() && on_the_way.begin()->first <= now; on_the_way.erase(on_the_way.begin())) {
-      const std::uint64_t number = received.extend(static_cast<std::uint16_t>(on_the_way.begin()->second)).value();
-      ASSERT_EQ(number, on_the_way.begin()->second);
+    for (; !in_flight.empty() && in_flight.begin()->first <= now; in_flight.erase(in_flight.begin())) {
+      const std::uint64_t number = received.extend(static_cast<std::uint16_t>(in_flight.begin()->second)).value();
+      ASSERT_EQ(number, in_flight.begin()->second);
       received.receive(number);
-      received.accept(number, on_the_way.begin()->first, Asks::soon, {10'000, 10'000});
+      received.accept(number, in_flight.begin()->first, AckTiming::soon, {10'000, 10'000});
     }
     if (received.due().value_or(now + 1) <= now) back.emplace(now + 20000, received.acknowledge(now));
     for (; !back.empty() && back.begin()->first <= now; back.erase(back.begin())) {
       const Report reported = report(sent, back.begin()->second, now);
       arrived += reported.arrived.size();
       for (const std::uint64_t number : reported.lost) {
-        said_lost.insert(number);
+        reported_lost.insert(number);
         wrong += dropped.contains(number) ? 0u : 1u;
       }
     }
   }
   EXPECT_NEAR(static_cast<double>(sent.loss()) / 65536, 0.1, 0.06);
   EXPECT_EQ(wrong, 0u);
-  EXPECT_GT(said_lost.size() + 30, dropped.size());
+  EXPECT_GT(reported_lost.size() + 30, dropped.size());
   EXPECT_GT(arrived, 10000u);
   EXPECT_NEAR(static_cast<double>(sent.round_trip()->smoothed), 42500, 2500);
 }
@@ -191,19 +191,19 @@ TEST(ReceivedNumbers, AcknowledgementsReportWhatWasAccepted) {
   ReceivedNumbers received;
   EXPECT_FALSE(received.can_acknowledge());
   EXPECT_FALSE(received.due());
-  received.accept(1, 1000, Asks::soon, kPatience);
-  received.accept(2, 2000, Asks::soon, kPatience);
-  received.accept(5, 5000, Asks::never, kPatience);
-  received.accept(4, 6000, Asks::soon, kPatience);
+  received.accept(1, 1000, AckTiming::soon, kPatience);
+  received.accept(2, 2000, AckTiming::soon, kPatience);
+  received.accept(5, 5000, AckTiming::never, kPatience);
+  received.accept(4, 6000, AckTiming::soon, kPatience);
   EXPECT_EQ(received.due(), 11000u) << "10 ms after the first";
-  const Acknowledgement said = received.acknowledge(7616);
-  EXPECT_EQ(said.newest, 5);
-  EXPECT_EQ(said.held, 163) << "2616 us since 5 came, in units of 16";
-  EXPECT_EQ(said.missing, 0b0010u) << "4, 2 and 1 were accepted, 3 was not, and there is none below 1";
+  const Acknowledgement ack = received.acknowledge(7616);
+  EXPECT_EQ(ack.newest, 5);
+  EXPECT_EQ(ack.held, 163) << "2616 us since 5 came, in units of 16";
+  EXPECT_EQ(ack.missing, 0b0010u) << "4, 2 and 1 were accepted, 3 was not, and there is none below 1";
   EXPECT_FALSE(received.due());
-  received.accept(6, 8000, Asks::never, kPatience);
-  EXPECT_FALSE(received.due()) << "an acknowledgement asks for none";
-  received.accept(7, 8000, Asks::now, kPatience);
+  received.accept(6, 8000, AckTiming::never, kPatience);
+  EXPECT_FALSE(received.due()) << "an acknowledgement is not ack-eliciting";
+  received.accept(7, 8000, AckTiming::now, kPatience);
   EXPECT_EQ(received.due(), 8000u);
   EXPECT_EQ(received.acknowledge(8000 + 2'000'000).held, Acknowledgement::kNoTiming);
   EXPECT_EQ(received.acknowledge(8000 + 16 * 65534).held, 65534);
@@ -213,11 +213,11 @@ TEST(ReceivedNumbers, WhatIsNotAcceptedIsMissing) {
   ReceivedNumbers received;
   for (std::uint64_t number = 1; number <= 200; ++number) {
     received.receive(number);
-    if (number % 5 != 0) received.accept(number, 1, Asks::soon, kPatience);
+    if (number % 5 != 0) received.accept(number, 1, AckTiming::soon, kPatience);
   }
-  const Acknowledgement said = received.acknowledge(1);
-  EXPECT_EQ(said.newest, 199);
-  for (std::uint64_t i = 0; i < 64; ++i) EXPECT_EQ(said.missing >> i & 1u, (199 - 1 - i) % 5 == 0 ? 1u : 0u);
+  const Acknowledgement ack = received.acknowledge(1);
+  EXPECT_EQ(ack.newest, 199);
+  for (std::uint64_t i = 0; i < 64; ++i) EXPECT_EQ(ack.missing >> i & 1u, (199 - 1 - i) % 5 == 0 ? 1u : 0u);
 }
 
 /// So that each number is reported in two acknowledgements at least, though one reports 65.
@@ -225,13 +225,13 @@ TEST(ReceivedNumbers, AfterThirtyTwoTheAcknowledgementIsDueAtOnce) {
   ReceivedNumbers numbers;
   for (std::uint64_t n = 1; n <= 31; ++n) {
     numbers.receive(n);
-    numbers.accept(n, 100 * n, Asks::soon, kPatience);
+    numbers.accept(n, 100 * n, AckTiming::soon, kPatience);
   }
   EXPECT_EQ(numbers.due(), 100 + 10'000);
-  numbers.accept(32, 3200, Asks::never, kPatience);
-  EXPECT_EQ(numbers.due(), 3200) << "though it does not ask: nobody else reports it";
+  numbers.accept(32, 3200, AckTiming::never, kPatience);
+  EXPECT_EQ(numbers.due(), 3200) << "though it is not ack-eliciting: nobody else reports it";
   numbers.acknowledge(3400);
-  numbers.accept(33, 3500, Asks::soon, kPatience);
+  numbers.accept(33, 3500, AckTiming::soon, kPatience);
   EXPECT_EQ(numbers.due(), 3500 + 10'000);
 }
 
@@ -239,7 +239,7 @@ TEST(ReceivedNumbers, AfterThirtyTwoTheAcknowledgementIsDueAtOnce) {
 TEST(ReceivedNumbers, WhileAllIsWellAnAcknowledgementMayWait) {
   constexpr ReceivedNumbers::Patience patience{10'000, 100'000};
   ReceivedNumbers numbers;
-  const auto accept = [&](std::uint64_t number, std::uint64_t now) { numbers.accept(number, now, Asks::soon, patience); };
+  const auto accept = [&](std::uint64_t number, std::uint64_t now) { numbers.accept(number, now, AckTiming::soon, patience); };
   accept(1, 1000);
   accept(2, 5000);
   EXPECT_EQ(numbers.due(), 101'000);
@@ -248,7 +248,7 @@ TEST(ReceivedNumbers, WhileAllIsWellAnAcknowledgementMayWait) {
   accept(5, 25'000);
   EXPECT_EQ(numbers.due(), 30'000);
   accept(3, 27'000);
-  EXPECT_EQ(numbers.due(), 101'000) << "it was only overtaken";
+  EXPECT_EQ(numbers.due(), 101'000) << "it was only reordered";
   accept(7, 28'000);
   numbers.acknowledge(38'000);
   accept(8, 40'000);

@@ -40,7 +40,7 @@ std::uint64_t send_all(PieceSender& sender) {
   return count;
 }
 
-/// As many on their way as LinePace permits, and none beyond what the client takes.
+/// As many in flight as LinePace permits, and none beyond what the client takes.
 TEST(PieceSender, SendsAWindowAndThenWaits) {
   PieceSender sender = sender_of(Bytes(400 * 1024));
   EXPECT_EQ(send_all(sender), 16u);
@@ -53,7 +53,7 @@ TEST(PieceSender, SendsAWindowAndThenWaits) {
     send_all(sender);
   }
   EXPECT_EQ(sender.next(), std::nullopt);
-  EXPECT_EQ(sender.on_their_way(), 16u) << "the first and 15 new ones";
+  EXPECT_EQ(sender.in_flight(), 16u) << "the first and 15 new ones";
 }
 
 /// What the client does not take without the first piece does not go: 64 pieces, and 16 more for each that has come.
@@ -101,7 +101,7 @@ TEST(PieceSender, IsDoneWhenAllHaveArrived) {
   sender.arrived(1);
   EXPECT_TRUE(sender.is_done());
   EXPECT_EQ(sender.next(), std::nullopt);
-  EXPECT_EQ(sender.on_their_way(), 0u);
+  EXPECT_EQ(sender.in_flight(), 0u);
 }
 
 TEST(PieceSender, PiecesAreTheDeclaration) {
@@ -126,19 +126,19 @@ TEST(PieceSender, PiecesAreTheDeclaration) {
 /// Datagrams over a line that brings one each `line` us, without a queue of others, and answers each 10 ms; what comes when the queue is
 /// full is lost.
 struct PacedLine {
-  PacedLine(std::uint64_t line_us, std::uint64_t way_us, std::uint64_t queue_us, std::uint64_t least_gap = 0)
-      : pace(least_gap), line(line_us), queue(queue_us), way(way_us) {}
+  PacedLine(std::uint64_t line_us, std::uint64_t delay_us, std::uint64_t queue_us, std::uint64_t least_gap = 0)
+      : pace(least_gap), line(line_us), queue(queue_us), delay(delay_us) {}
 
   void run(std::uint64_t until) {
     for (; now < until; now += 50) {
-      while (now >= next && on_way < pace.window()) send();
+      while (now >= next && in_flight < pace.window()) send();
       for (; !arrivals.empty() && arrivals.begin()->first <= now; arrivals.erase(arrivals.begin())) {
         newest = arrivals.begin()->second;
         newest_at = arrivals.begin()->first;
         ++unreported;
         if (answer_at == 0) answer_at = now + 10'000;
       }
-      if (answer_at == 0 || now < answer_at + way) continue;
+      if (answer_at == 0 || now < answer_at + delay) continue;
       report();
     }
   }
@@ -147,19 +147,19 @@ struct PacedLine {
     worst = std::max(worst, waits);
     pace.sent(++number, now);
     sent_at[number] = now;
-    ++on_way;
+    ++in_flight;
     next = std::max(next + 2000, now) - 2000 + pace.gap();
     if (waits > queue) {
-      --on_way;
+      --in_flight;
       ++lost;
       return;
     }
     free_at = now + waits + line;
-    arrivals.emplace(free_at + way, number);
+    arrivals.emplace(free_at + delay, number);
   }
   void report() {
-    for (; unreported > 0; --unreported, --on_way, ++came) pace.arrived();
-    const auto arrived = static_cast<std::int64_t>(newest_at + way);
+    for (; unreported > 0; --unreported, --in_flight, ++came) pace.arrived();
+    const auto arrived = static_cast<std::int64_t>(newest_at + delay);
     const std::int64_t sample = arrived - static_cast<std::int64_t>(sent_at[newest]);
     trip.variation = trip.smoothed == 0 ? sample / 2 : trip.variation + (std::abs(trip.smoothed - sample) - trip.variation) / 4;
     trip.smoothed = trip.smoothed == 0 ? sample : trip.smoothed + (sample - trip.smoothed) / 8;
@@ -169,26 +169,26 @@ struct PacedLine {
   }
 
   LinePace pace;
-  std::uint64_t line, queue, way;
+  std::uint64_t line, queue, delay;
   RoundTrip trip;
   std::map<std::uint64_t, std::uint64_t> arrivals, sent_at;
   std::uint64_t now = 1'000'000, next = now, free_at = 0, answer_at = 0, newest = 0, newest_at = 0, number = 0;
-  std::uint64_t on_way = 0, unreported = 0, came = 0, lost = 0, worst = 0;
+  std::uint64_t in_flight = 0, unreported = 0, came = 0, lost = 0, worst = 0;
 };
 
 TEST(LinePace, FillsALineAfterARoundTripAndLeavesItsQueueShort) {
   for (const std::uint64_t line : {150u, 900u, 9'000u})
-    for (const std::uint64_t way : {1'000u, 20'000u, 100'000u}) {
-      PacedLine test(line, way, 100'000);
-      const auto settled = 4 * way + 60'000;
-      test.run(test.now + settled + (line < 500 ? 6 : 1) * (2 * way + 20'000));
+    for (const std::uint64_t delay : {1'000u, 20'000u, 100'000u}) {
+      PacedLine test(line, delay, 100'000);
+      const auto settled = 4 * delay + 60'000;
+      test.run(test.now + settled + (line < 500 ? 6 : 1) * (2 * delay + 20'000));
       const std::uint64_t came = test.came, before = test.now;
       test.worst = 0;
       test.run(test.now + 3'000'000);
       const double fraction = static_cast<double>((test.came - came) * line) / static_cast<double>(test.now - before);
-      EXPECT_GT(fraction, std::min(0.85, 0.85 * 800 * static_cast<double>(line) / static_cast<double>(2 * way + 10'000)))
-          << line << " us, way " << way;
-      EXPECT_LT(test.worst, 40'000 + 6 * line + way / 4) << line << " us, way " << way;
+      EXPECT_GT(fraction, std::min(0.85, 0.85 * 800 * static_cast<double>(line) / static_cast<double>(2 * delay + 10'000)))
+          << line << " us, delay " << delay;
+      EXPECT_LT(test.worst, 40'000 + 6 * line + delay / 4) << line << " us, delay " << delay;
     }
 }
 

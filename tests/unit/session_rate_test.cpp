@@ -14,7 +14,7 @@ namespace {
 
 // ==== session line rate ====
 
-/// One line of a rate and a way, on which senders wait for each other; one with a rate by LineRate sends whenever it may.
+/// One line of a rate and a delay, on which senders wait for each other; one with a rate by LineRate sends whenever it may.
 class SharedLine {
  public:
   /// in   rate  [bit/s];  trip  [us];  senders  by LineRate
@@ -120,8 +120,8 @@ TEST(LineRate, FollowsALineThatChanges) {
   EXPECT_GT(line.sent(0, 10), 320'000u) << "there is room again";
 }
 
-/// Another way, 100 ms longer, is no queue.
-TEST(LineRate, FollowsAWayThatGrowsLonger) {
+/// Another delay, 100 ms longer, is no queue.
+TEST(LineRate, FollowsADelayThatGrows) {
   for (const std::uint64_t rate : {900'000u, 10'000'000u}) {
     SharedLine line(rate, 40'000, 1);  // 800 kbit/s are sent
     line.run(10);

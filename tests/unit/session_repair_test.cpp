@@ -69,17 +69,17 @@ TEST(RepairedExchange, SecondCopiesChangeNothing) {
 }
 
 /// There is no time for a second round of them.
-TEST(RepairedExchange, OverALongWayThereAreMoreCopies) {
-  for (const std::uint64_t way : {10u, 50u}) {
+TEST(RepairedExchange, OverALongRoundTripThereAreMoreCopies) {
+  for (const std::uint64_t delay : {10u, 50u}) {
     Ends ends({.baseline = Baseline::repaired});
     const auto step = [&] {
       ends.submit();
       const auto down = ends.drain(*ends.server);
-      ends.now += way * kMillisecond;
+      ends.now += delay * kMillisecond;
       ends.give(down);
       ends.now += 10 * kMillisecond;  // until it answers
       const auto up = ends.drain(*ends.client);
-      ends.now += way * kMillisecond;
+      ends.now += delay * kMillisecond;
       for (const Bytes& bytes : up) EXPECT_TRUE(ends.hear(*ends.server, bytes));
     };
     for (int i = 0; i < 20; ++i) step();
@@ -89,7 +89,7 @@ TEST(RepairedExchange, OverALongWayThereAreMoreCopies) {
     step();
     std::size_t copies = 0;
     for (int i = 0; i < 5; ++i, ends.now += 10 * kMillisecond) copies += ends.drain(*ends.server).size();
-    EXPECT_EQ(copies, way == 10 ? 2u : 3u) << 2 * way << " ms there and back";
+    EXPECT_EQ(copies, delay == 10 ? 2u : 3u) << 2 * delay << " ms there and back";
   }
 }
 
@@ -99,7 +99,7 @@ TEST(RepairedExchange, TheLastPacketBeforeAPauseGoesAgain) {
   ends.lose();
   const auto due = ends.server->due();
   ASSERT_TRUE(due);
-  EXPECT_EQ(*due, ends.server->asked_at() + ends.server->patience());
+  EXPECT_EQ(*due, ends.server->eliciting_at() + ends.server->patience());
   ends.now = *due - 1;
   EXPECT_TRUE(ends.drain(*ends.server).empty());
   ends.now = *due;
@@ -110,7 +110,7 @@ TEST(RepairedExchange, TheLastPacketBeforeAPauseGoesAgain) {
   ends.expect_same();
 }
 
-/// Without a way for a second the objects begin anew: one key packet, not all that was lost.
+/// Without a link for a second the objects begin anew: one key packet, not all that was lost.
 TEST(RepairedExchange, AfterAnOutageAKeyPacketIsEnough) {
   RepairedEnds ends;
   for (int i = 0; i < 100; ++i) ends.lose();
@@ -181,24 +181,24 @@ TEST(RepairedExchange, LossAndDisorderAreRepaired) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     RepairedEnds ends;
     std::mt19937_64 random(seed);
-    std::vector<std::pair<std::uint64_t, Bytes>> on_the_way;
+    std::vector<std::pair<std::uint64_t, Bytes>> in_flight;
     std::uint64_t decoded = 0;
     for (int i = 0; i < 3000; ++i) {
       ends.submit();
       for (Bytes& bytes : ends.drain(*ends.server)) {
         if (random() % 10 < 3) continue;
-        if (random() % 10 == 0) on_the_way.emplace_back(ends.now + random() % 50'000, bytes);
-        on_the_way.emplace_back(ends.now + random() % 15'000, std::move(bytes));
+        if (random() % 10 == 0) in_flight.emplace_back(ends.now + random() % 50'000, bytes);
+        in_flight.emplace_back(ends.now + random() % 15'000, std::move(bytes));
       }
       ends.now += 10 * kMillisecond;
-      for (std::size_t k = 0; k < on_the_way.size();) {
-        if (on_the_way[k].first > ends.now) {
+      for (std::size_t k = 0; k < in_flight.size();) {
+        if (in_flight[k].first > ends.now) {
           ++k;
           continue;
         }
-        const auto heard = ends.hear(*ends.client, on_the_way[k].second);
+        const auto heard = ends.hear(*ends.client, in_flight[k].second);
         if (heard && heard->tick) ++decoded;
-        on_the_way.erase(on_the_way.begin() + static_cast<std::ptrdiff_t>(k));
+        in_flight.erase(in_flight.begin() + static_cast<std::ptrdiff_t>(k));
       }
       for (const Bytes& bytes : ends.drain(*ends.client)) {
         if (random() % 10 >= 3) {

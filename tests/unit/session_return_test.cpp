@@ -14,7 +14,7 @@
 namespace tactus {
 namespace {
 
-constexpr sim::Microseconds kWay = 20'000;  // [us]
+constexpr sim::Microseconds kDelay = 20'000;  // [us]
 
 SharedScene scene() { return SceneBuilder(1000).rigid("pendulum").baselines(64).build().value(); }
 
@@ -31,7 +31,7 @@ struct Visit {
   }
   testing::SessionWorld::End& add(const SessionClientOptions& of, double loss = 0, std::uint64_t token = 0) {
     const std::uint64_t seed = 10 * world.ends.size();
-    return world.add(of, {.seed = seed + 1, .delay = kWay, .loss = loss}, {.seed = seed + 2, .delay = kWay, .loss = loss}, 0,
+    return world.add(of, {.seed = seed + 1, .delay = kDelay, .loss = loss}, {.seed = seed + 2, .delay = kDelay, .loss = loss}, 0,
                      token);
   }
   void run(int ms) {
@@ -110,7 +110,7 @@ TEST(SessionReturn, ASessionThatComesToTheAddressOfOneThatIsGoneIsHeardAtOnce) {
   const auto join = [&](std::uint64_t peer, std::uint64_t nonce, std::uint64_t token) {
     return server.handle_datagram(0, peer, writer.write(Join{Role::participant, nonce, 1 << 28, 1 << 20, token, 0}));
   };
-  const auto say = [&](std::uint64_t peer, std::uint64_t epoch, std::uint64_t number) {
+  const auto state = [&](std::uint64_t peer, std::uint64_t epoch, std::uint64_t number) {
     writer.begin(number);
     EXPECT_TRUE(writer.add(StatePart{0}));
     return server.handle_datagram(0, peer, writer.finish(epoch));
@@ -119,11 +119,11 @@ TEST(SessionReturn, ASessionThatComesToTheAddressOfOneThatIsGoneIsHeardAtOnce) {
   for (std::size_t i = 0; i < 2; ++i) {
     ASSERT_TRUE(join(10 + i, 5 + i, 0));
     epochs[i] = std::get<Welcome>(read_datagram(server.poll_datagram(0)->bytes, Direction::down).value()).epoch;
-    ASSERT_TRUE(say(10 + i, epochs[i], 1));
+    ASSERT_TRUE(state(10 + i, epochs[i], 1));
   }
   server.close(0, LeaveReason::bye);
   ASSERT_TRUE(join(10, 6, epochs[1]));
-  EXPECT_TRUE(say(10, epochs[1], 2));
+  EXPECT_TRUE(state(10, epochs[1], 2));
 }
 
 TEST(SessionReturn, ATokenThatTheServerDoesNotKnowIsNone) {

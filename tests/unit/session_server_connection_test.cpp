@@ -59,8 +59,8 @@ struct Desk {
     for (int i = 0; i < 10'000 && connection.state() == SessionState::receiving; ++i) {
       now += 1000;
       for (const Bytes& bytes : drain()) {
-        const auto said = read_datagram(bytes, Direction::down).value();
-        const std::uint16_t newest = std::get<Numbered>(said).number;
+        const auto message = read_datagram(bytes, Direction::down).value();
+        const std::uint16_t newest = std::get<Numbered>(message).number;
         ASSERT_TRUE(hear({Acknowledgement{newest, 0, 0}, StatePart{1}}));
       }
     }
@@ -72,7 +72,7 @@ struct Desk {
   std::uint64_t now = kNow, number = 0;
 };
 
-TEST(ServerConnection, SendsNothingToAnAddressThatHasNotProvenItself) {
+TEST(ServerConnection, SendsNothingToAnAddressThatIsNotValidated) {
   Desk desk({}, 10);
   for (int i = 0; i < 9'999; ++i) {
     desk.now += 1000;
@@ -116,8 +116,8 @@ TEST(ServerConnection, ChoosesWhatPacketsBuildOn) {
     bool signalled = false;
     desk.now += 100'000;  // an acknowledgement is due
     for (const Bytes& bytes : desk.drain()) {
-      const Datagram said = read_datagram(bytes, Direction::down).value();
-      PartReader parts = std::get<Numbered>(said).parts(Direction::down);
+      const Datagram message = read_datagram(bytes, Direction::down).value();
+      PartReader parts = std::get<Numbered>(message).parts(Direction::down);
       for (auto part = parts.next(); part && *part; part = parts.next())
         signalled = signalled || std::holds_alternative<BaselinesPart>(**part);
     }
@@ -169,8 +169,8 @@ TEST(ServerConnection, ANewEpochIsSentUntilTheClientSpeaksInIt) {
   std::size_t welcomes = 0;
   for (int i = 0; i < 1000; ++i) {
     for (const Bytes& bytes : desk.drain()) {
-      const auto said = read_datagram(bytes, Direction::down).value();
-      if (const auto* welcome = std::get_if<Welcome>(&said)) {
+      const auto message = read_datagram(bytes, Direction::down).value();
+      if (const auto* welcome = std::get_if<Welcome>(&message)) {
         ++welcomes;
         EXPECT_EQ(welcome->serial, 1u);
         EXPECT_EQ(welcome->epoch, kEpoch + 1);

@@ -167,10 +167,10 @@ TEST(SessionServer, RoundTripAndClockAreMeasured) {
     for (const double loss : {0.0, 0.05}) {
       Show show(1, false);
       SessionWorld world(show.scene, {.sender = {.triggers = {.visual_position = 6e-3}}});
-      const auto way = [loss](std::uint64_t seed) {
+      const auto link = [loss](std::uint64_t seed) {
         return sim::LinkOptions{.seed = seed, .delay = 20'000, .jitter = 5'000, .loss = loss};
       };
-      world.add({}, way(1), way(2), clock);
+      world.add({}, link(1), link(2), clock);
       double server = 0, client = 0, worst_offset = 0;
       constexpr int kTicks = 3000, kWarm = 300;
       for (int i = 0; i < kTicks; ++i) {
@@ -193,7 +193,7 @@ TEST(SessionServer, RoundTripAndClockAreMeasured) {
 TEST(SessionServer, TheRateIsKept) {
   for (const std::uint32_t headers : {28u, 57u}) {
     Show show(1, false);
-    SessionWorld world(show.scene, {.rate = 6'000, .headers = headers, .widening = 1});
+    SessionWorld world(show.scene, {.rate = 6'000, .headers = headers, .max_bound_scale = 1});
     world.add({}, {}, {});
     for (int i = 0; i < 3000; ++i) world.step([&](std::int64_t tick) { return show.at(tick); });
     const Traffic traffic = world.server->status(0).traffic;
@@ -220,7 +220,7 @@ TEST(SessionServer, KnowsToWhomItHasSomethingToSay) {
   EXPECT_FALSE(world.server->has_peer(1));
 }
 
-TEST(SessionServer, BoundsWidenWhileTheRateDoesNotCarryThem) {
+TEST(SessionServer, BoundsScaleWhileTheRateDoesNotCarryThem) {
   const auto run = [](const SessionServerOptions& options, const sim::LinkOptions& down) {
     Show show(1, true);
     SessionWorld world(show.scene, options);
@@ -229,32 +229,32 @@ TEST(SessionServer, BoundsWidenWhileTheRateDoesNotCarryThem) {
     const ClientStatus status = world.server->status(0);
     std::vector<double> factors{1};
     for (const ServerEvent& event : world.events) {
-      if (event.kind != ServerEvent::Kind::widened) continue;
-      EXPECT_NE(event.widening, factors.back());
-      factors.push_back(event.widening);
+      if (event.kind != ServerEvent::Kind::bounds_scaled) continue;
+      EXPECT_NE(event.bound_scale, factors.back());
+      factors.push_back(event.bound_scale);
     }
-    EXPECT_EQ(factors.back(), status.widening);
-    EXPECT_EQ(std::ranges::max(factors), status.widened.widest);
+    EXPECT_EQ(factors.back(), status.bound_scale);
+    EXPECT_EQ(std::ranges::max(factors), status.bound_scaling.largest);
     return status;
   };
   const ClientStatus free = run({}, {.delay = 20'000});
-  EXPECT_EQ(free.widened.widest, 1);
-  EXPECT_EQ(free.widened.time, 0u);
+  EXPECT_EQ(free.bound_scaling.largest, 1);
+  EXPECT_EQ(free.bound_scaling.time, 0u);
   const auto needed = 8 * (free.traffic.bytes_sent + 28 * free.traffic.datagrams_sent) / 40;
-  const ClientStatus fixed = run({.rate = needed / 3, .widening = 1}, {.delay = 20'000});
+  const ClientStatus fixed = run({.rate = needed / 3, .max_bound_scale = 1}, {.delay = 20'000});
   const ClientStatus rated = run({.rate = needed / 3}, {.delay = 20'000});
-  EXPECT_EQ(fixed.widened.widest, 1);
-  EXPECT_GT(rated.widened.widest, 1.9);
-  EXPECT_GT(rated.widened.time, 10'000'000u);
+  EXPECT_EQ(fixed.bound_scaling.largest, 1);
+  EXPECT_GT(rated.bound_scaling.largest, 1.9);
+  EXPECT_GT(rated.bound_scaling.time, 10'000'000u);
   EXPECT_LT(rated.traffic.ticks_held, fixed.traffic.ticks_held / 2);
-  // A bottleneck on the way of which the server knows nothing: it finds its rate.
+  // A bottleneck in the link of which the server knows nothing: it finds its rate.
   const sim::LinkOptions narrow{.delay = 20'000, .rate = static_cast<double>(needed) / 3};
   for (const double most : {1.0, 8.0}) {
-    const ClientStatus found = run({.widening = most}, narrow);
+    const ClientStatus found = run({.max_bound_scale = most}, narrow);
     const auto sent = 8 * (found.traffic.bytes_sent + 28 * found.traffic.datagrams_sent) / 40;
     EXPECT_LT(found.round_trip->smoothed, 200'000) << "no queue stays";
     EXPECT_GT(sent, needed / 3 * 7 / 10) << "with the time until it is found";
-    EXPECT_EQ(found.widened.widest > 1.9, most > 1);
+    EXPECT_EQ(found.bound_scaling.largest > 1.9, most > 1);
   }
 }
 
@@ -287,7 +287,7 @@ TEST(SessionServer, KnowsWhereADeviceIs) {
 }
 
 /// Strangers, old datagrams, damaged ones: nothing changes, nothing is allocated, and nothing longer is answered.
-/// A stranger's datagram: noise, a join that is damaged or whole, or what a client once said, damaged or whole, from another address.
+/// A stranger's datagram: noise, a join that is damaged or whole, or what a client once sent, damaged or whole, from another address.
 class Stranger {
  public:
   explicit Stranger(std::uint64_t seed) : random_(seed) { bytes_.reserve(1300); }
@@ -394,10 +394,10 @@ TEST(SessionServer, SubmitAndDatagramsAllocateNothing) {
   expect_same_states(world, 2);
 }
 
-/// While the rate holds the bodies back nothing else is said either: what the client has would count as new.
+/// While the rate holds the bodies back nothing else is sent either: what the client has would count as new.
 TEST(SessionServer, NoForceFromStatesThatTheRateHeldBack) {
   Show show;
-  SessionWorld world(show.scene, {.sender = {.triggers = {.visual_position = 1e-4}}, .rate = 20'000, .widening = 1});
+  SessionWorld world(show.scene, {.sender = {.triggers = {.visual_position = 1e-4}}, .rate = 20'000, .max_bound_scale = 1});
   SessionClient& client = *world.add({.role = Role::participant}, {.delay = 5'000}, {.delay = 5'000}).client;
   int old_states = 0, rendered = 0;
   for (int i = 0; i < 1500; ++i) {

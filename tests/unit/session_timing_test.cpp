@@ -16,7 +16,7 @@ namespace {
 
 // ==== session clock offset ====
 
-TEST(ClockOffset, OfASymmetricWayIsExact) {
+TEST(ClockOffset, OfASymmetricLinkIsExact) {
   ClockOffset offset;
   EXPECT_EQ(offset.value(), std::nullopt);
   offset.add(5'000'000, 40'000, 1'000'000);
@@ -26,12 +26,12 @@ TEST(ClockOffset, OfASymmetricWayIsExact) {
   EXPECT_EQ(behind.value(), -3'980'000);
 }
 
-/// in   there, back  [us] on the way;  offset  [us] of the other clock
+/// in   there, back  [us] of delay;  offset  [us] of the other clock
 void exchange(ClockOffset& of, std::uint64_t now, std::int64_t there, std::int64_t back, std::int64_t offset) {
   of.add(static_cast<std::uint64_t>(static_cast<std::int64_t>(now) - back + offset), there + back, now);
 }
 
-TEST(ClockOffset, TheFastestOfEachWayInTenSecondsCounts) {
+TEST(ClockOffset, TheFastestOfEachDirectionInTenSecondsCounts) {
   ClockOffset offset;
   exchange(offset, 1'000'000, 10'000, 50'000, 100'000);
   EXPECT_EQ(offset.value(), 80'000);
@@ -61,9 +61,9 @@ TEST(ClockOffset, StaysNearUnderJitterAndDrift) {
 
 // ==== session playout clock ====
 
-/// Packets of every tick at 1 kHz that travel over a way of some delay, and a clock that is asked each millisecond.
-struct Way {
-  explicit Way(const PlayoutOptions& options = {}) : clock(1000, options) {}
+/// Packets of every tick at 1 kHz that travel over a link of some delay, and a clock that is asked each millisecond.
+struct DelayedTicks {
+  explicit DelayedTicks(const PlayoutOptions& options = {}) : clock(1000, options) {}
 
   /// in   delay(time) [us]; nothing: lost.   Both times are those of the server's clock; the client's is `client(time)`.
   ///      every  [ticks] from number to number
@@ -119,39 +119,39 @@ TEST(PlayoutClock, ReportsHowLateATickIsShown) {
 
 TEST(PlayoutClock, AdaptsToJitterSoThatFewPacketsAreLate) {
   for (const std::uint64_t jitter : {0u, 3'000u, 30'000u}) {
-    Way way;
+    DelayedTicks line;
     std::mt19937_64 random(jitter + 1);
-    way.run(60'000, [&](std::uint64_t) { return 20'000 + random() % (jitter + 1); });
-    EXPECT_LE(way.late, way.packets / 500) << jitter;
-    EXPECT_GE(way.clock.delay(), static_cast<std::int64_t>(jitter + 9'000));
-    EXPECT_LE(way.clock.delay(), static_cast<std::int64_t>(jitter + 32'000)) << jitter << ": nor more than there must be";
-    EXPECT_NEAR(static_cast<double>(way.lag), static_cast<double>(20'000 + way.clock.delay()), 1500);
+    line.run(60'000, [&](std::uint64_t) { return 20'000 + random() % (jitter + 1); });
+    EXPECT_LE(line.late, line.packets / 500) << jitter;
+    EXPECT_GE(line.clock.delay(), static_cast<std::int64_t>(jitter + 9'000));
+    EXPECT_LE(line.clock.delay(), static_cast<std::int64_t>(jitter + 32'000)) << jitter << ": nor more than there must be";
+    EXPECT_NEAR(static_cast<double>(line.lag), static_cast<double>(20'000 + line.clock.delay()), 1500);
   }
 }
 
 TEST(PlayoutClock, LossChangesNothing) {
-  Way way;
+  DelayedTicks line;
   std::mt19937_64 random(4);
-  way.run(30'000, [&](std::uint64_t) { return random() % 2 ? std::optional<std::uint64_t>(random() % 30'000) : std::nullopt; });
-  EXPECT_LE(way.late, way.packets / 500);
-  EXPECT_LE(way.clock.delay(), 62'000);
+  line.run(30'000, [&](std::uint64_t) { return random() % 2 ? std::optional<std::uint64_t>(random() % 30'000) : std::nullopt; });
+  EXPECT_LE(line.late, line.packets / 500);
+  EXPECT_LE(line.clock.delay(), 62'000);
 }
 
 /// Gilbert-Elliott: one loss in 20, on average five in a row.
 TEST(PlayoutClock, BridgesBurstsOfLosses) {
   for (const std::uint64_t every : {1u, 5u}) {  // [ticks] from packet to packet
-    Way way;
+    DelayedTicks line;
     std::mt19937_64 random(6);
     bool lost = false;
     std::uint64_t row = 0, long_rows = 0, rows = 0;
-    way.run(
+    line.run(
         60'000,
         [&](std::uint64_t time) {
           if (time / 1000 % every > 0) return std::optional<std::uint64_t>();
           lost = random() % 1000 < (lost ? 800u : 10u);
           if (!lost && row > 0) {
             ++rows;
-            if (1000 * (row + 1) * every > static_cast<std::uint64_t>(way.clock.delay()) + 1000) ++long_rows;
+            if (1000 * (row + 1) * every > static_cast<std::uint64_t>(line.clock.delay()) + 1000) ++long_rows;
           }
           row = lost ? row + 1 : 0;
           return lost ? std::nullopt : std::optional<std::uint64_t>(20'000);
@@ -160,52 +160,52 @@ TEST(PlayoutClock, BridgesBurstsOfLosses) {
     EXPECT_GT(rows, 100u);
     EXPECT_LE(long_rows, rows * 2 / 5) << "a third of them, and those of which it has not heard yet";
     if (every == 1) {
-      EXPECT_LE(way.clock.delay(), 45'000);
+      EXPECT_LE(line.clock.delay(), 45'000);
     } else {
-      EXPECT_GT(way.clock.delay(), 30'000);
+      EXPECT_GT(line.clock.delay(), 30'000);
     }
-    EXPECT_LE(way.clock.delay(), 151'000);
+    EXPECT_LE(line.clock.delay(), 151'000);
   }
 }
 
 TEST(PlayoutClock, GrowsAtOnceAndShrinksByAMillisecondPerSecond) {
-  Way way;
+  DelayedTicks line;
   std::mt19937_64 random(5);
   const auto jitter = [&](std::uint64_t most) { return [&random, most](std::uint64_t) { return random() % most; }; };
-  way.run(10'000, jitter(1'000));
-  EXPECT_LT(way.clock.delay(), 32'000);
-  way.run(1'000, jitter(60'000));
-  const std::int64_t grown = way.clock.delay();
+  line.run(10'000, jitter(1'000));
+  EXPECT_LT(line.clock.delay(), 32'000);
+  line.run(1'000, jitter(60'000));
+  const std::int64_t grown = line.clock.delay();
   EXPECT_GT(grown, 60'000);
-  way.run(10'000, jitter(1'000));
-  EXPECT_NEAR(static_cast<double>(way.clock.delay()), static_cast<double>(grown - 10'000), 2'500);
-  way.run(60'000, jitter(1'000));
-  EXPECT_LT(way.clock.delay(), 32'000);
+  line.run(10'000, jitter(1'000));
+  EXPECT_NEAR(static_cast<double>(line.clock.delay()), static_cast<double>(grown - 10'000), 2'500);
+  line.run(60'000, jitter(1'000));
+  EXPECT_LT(line.clock.delay(), 32'000);
 }
 
 TEST(PlayoutClock, AFixedDelayStays) {
   for (const std::uint32_t fixed : {0u, 25'000u}) {
-    Way way({.fixed = fixed});
+    DelayedTicks line({.fixed = fixed});
     std::mt19937_64 random(6);
-    way.run(20'000, [&](std::uint64_t) { return 10'000 + random() % 20'000; });
-    EXPECT_EQ(way.clock.delay(), fixed);
-    EXPECT_NEAR(static_cast<double>(way.lag), 10'000.0 + fixed, 1'500) << "behind the fastest";
+    line.run(20'000, [&](std::uint64_t) { return 10'000 + random() % 20'000; });
+    EXPECT_EQ(line.clock.delay(), fixed);
+    EXPECT_NEAR(static_cast<double>(line.lag), 10'000.0 + fixed, 1'500) << "behind the fastest";
   }
 }
 
 /// For 20 minutes the client's clock runs fast or slow by 50 ppm: 60 ms in all.
 TEST(PlayoutClock, FollowsADriftingClock) {
   for (const bool fast : {true, false}) {
-    Way way;
-    way.client = [fast](std::uint64_t t) { return fast ? t + t / 20'000 : t - t / 20'000; };
+    DelayedTicks line;
+    line.client = [fast](std::uint64_t t) { return fast ? t + t / 20'000 : t - t / 20'000; };
     std::mt19937_64 random(7);
     std::int64_t least = 1'000'000, most = 0;
     for (int minute = 0; minute < 20; ++minute) {
-      way.run(60'000, [&](std::uint64_t) { return random() % 5'000; });
-      least = std::min(least, way.lag);
-      most = std::max(most, way.lag);
+      line.run(60'000, [&](std::uint64_t) { return random() % 5'000; });
+      least = std::min(least, line.lag);
+      most = std::max(most, line.lag);
     }
-    EXPECT_LE(way.late, way.packets / 500);
+    EXPECT_LE(line.late, line.packets / 500);
     EXPECT_GE(least, 10'000) << fast;
     EXPECT_LE(most, 40'000) << fast;
   }
@@ -223,17 +223,17 @@ TEST(PlayoutClock, DriftAtRestAddsNoDelay) {
   }
 }
 
-TEST(PlayoutClock, FollowsAWayThatChanges) {
-  Way way;
+TEST(PlayoutClock, FollowsADelayThatChanges) {
+  DelayedTicks line;
   const auto constant = [](std::uint64_t delay) { return [delay](std::uint64_t) { return delay; }; };
-  way.run(15'000, constant(80'000));
-  way.run(1'000, constant(10'000));
-  EXPECT_LT(way.lag, 120'000) << "a shorter way is used at once: packets come early";
-  way.run(1'000, constant(200'000));
-  way.run(1'000, constant(200'000));
-  EXPECT_GE(way.lag, 200'000) << "a longer one, too";
-  way.run(240'000, constant(200'000));
-  EXPECT_LT(way.lag, 235'000);
+  line.run(15'000, constant(80'000));
+  line.run(1'000, constant(10'000));
+  EXPECT_LT(line.lag, 120'000) << "a shorter delay is used at once: packets come early";
+  line.run(1'000, constant(200'000));
+  line.run(1'000, constant(200'000));
+  EXPECT_GE(line.lag, 200'000) << "a longer one, too";
+  line.run(240'000, constant(200'000));
+  EXPECT_LT(line.lag, 235'000);
 }
 
 TEST(PlayoutClock, ShownNeverFallsWhateverComes) {
@@ -290,7 +290,7 @@ TEST(DevicePace, WhatIsLateSlowsItDownAtOnce) {
   EXPECT_FALSE(pace.step(503, 433)) << "once";
 }
 
-/// The way gets longer by 100 ms, with a packet every 10 ms: until the device's tick goes on, all are too late to act, and the pace does not
+/// The delay gets longer by 100 ms, with a packet every 10 ms: until the device's tick goes on, all are too late to count, and the pace does not
 /// get slower for it.
 TEST(DevicePace, AJumpOfTheDelaySlowsItDownByAsMuch) {
   DevicePace pace(1000);
@@ -308,7 +308,7 @@ TEST(DevicePace, ItGetsFasterWhereAllComeEarly) {
   pace.step(0, -50);
   std::int64_t offset = 52, faster = 0;
   for (std::int64_t tick = 1; tick <= 10'000; ++tick) {
-    pace.heard(tick - 1 - 47);  // of a way that always takes as long
+    pace.heard(tick - 1 - 47);  // of a link that always takes as long
     if (const auto change = pace.step(tick, tick - 50)) {
       EXPECT_EQ(change->offset, offset - 1) << "a tick at a time";
       offset = change->offset;

@@ -39,7 +39,7 @@ SessionServer server_of(bool works_elsewhere, std::uint16_t clients = 4) {
   return SessionServer::create(scene(), options, 5, 0).value();
 }
 
-/// Clients 5 ms away each way, and all that the server said.
+/// Clients 5 ms away each way, and all that the server sent.
 class World {
  public:
   World(bool works_elsewhere, std::size_t clients) : server(server_of(works_elsewhere)) {
@@ -74,12 +74,12 @@ class World {
       static_cast<void>(users[down.front().user].handle_datagram(now, down.front().bytes));
     for (std::size_t i = 0; i < users.size(); ++i) {
       users[i].handle_timeout(now);
-      while (const auto said = users[i].poll_datagram(now)) up.push_back({now + 5000, i, Bytes(said->begin(), said->end())});
+      while (const auto message = users[i].poll_datagram(now)) up.push_back({now + 5000, i, Bytes(message->begin(), message->end())});
     }
   }
   void drain(std::uint64_t now) {
-    while (const auto said = server.poll_datagram(now)) {
-      down.push_back({now + 5000, said->peer - 1, Bytes(said->bytes.begin(), said->bytes.end())});
+    while (const auto message = server.poll_datagram(now)) {
+      down.push_back({now + 5000, message->peer - 1, Bytes(message->bytes.begin(), message->bytes.end())});
       all.push_back(down.back().bytes);
     }
     while (const auto event = server.poll_event()) lives += event->kind == ServerEvent::Kind::live ? 1 : 0;
@@ -231,7 +231,7 @@ TEST(SessionWork, WhatALiveClientHadIsHandedOut) {
   EXPECT_EQ(world.lives, 2);
 }
 
-/// Without memory the client stays where it is, and its next sign of life asks again.
+/// Without memory the client stays where it is, and its next keep-alive asks again.
 TEST(SessionWork, WithoutMemoryItIsAskedAgain) {
   World world(true, 1);
   std::optional<SessionServer::Work> first;
@@ -289,11 +289,11 @@ std::vector<std::vector<Bytes>> serve(std::size_t first, std::size_t count, cons
     clients[i].open(0, 100 + first + i);
   }
   const auto drain = [&](std::uint64_t now) {
-    while (const auto said = server.poll_datagram(now)) {
-      const std::size_t i = said->peer - 1;
-      static_cast<void>(clients[i].handle_datagram(now, said->bytes));
-      const bool is_numbered = (said->bytes[0] & 3u) != 0;
-      if (is_numbered) out[i].emplace_back(said->bytes.begin(), said->bytes.end() - 4);
+    while (const auto message = server.poll_datagram(now)) {
+      const std::size_t i = message->peer - 1;
+      static_cast<void>(clients[i].handle_datagram(now, message->bytes));
+      const bool is_numbered = (message->bytes[0] & 3u) != 0;
+      if (is_numbered) out[i].emplace_back(message->bytes.begin(), message->bytes.end() - 4);
     }
   };
   for (std::size_t tick = 0; tick < kTicks; ++tick) {
@@ -309,7 +309,7 @@ std::vector<std::vector<Bytes>> serve(std::size_t first, std::size_t count, cons
     drain(now);
     for (std::size_t i = 0; i < count; ++i) {
       clients[i].handle_timeout(now);
-      while (const auto said = clients[i].poll_datagram(now)) up[i].emplace_back(said->begin(), said->end());
+      while (const auto message = clients[i].poll_datagram(now)) up[i].emplace_back(message->begin(), message->end());
       up[i].emplace_back();  // a tick passes
     }
   }

@@ -23,7 +23,7 @@ void expect_same(const std::optional<SurfaceHit>& a, const std::optional<Surface
   EXPECT_EQ(a->at.distance, b->at.distance);
 }
 
-/// A sphere that drifts over the mesh as a proxy does: short ways along it, now and then a long one into it, stopped where it touches.
+/// A sphere that drifts over the mesh as a proxy does: short displacements along it, now and then a long one into it, stopped where it touches.
 class Walk {
  public:
   Walk(const Body& body, double radius, std::uint64_t seed) : body_(body), radius_(radius), random_(seed) { place(); }
@@ -34,10 +34,10 @@ class Walk {
   }
   Sweep next() {
     const double length = random_.next() % 4 == 0 ? 5 * radius_ : random_.uniform(0, 0.4 * radius_);
-    const Vec3 inward = (-1 / norm(at_)) * at_, way = random_point(random_, 1) + random_.uniform(-0.2, 1) * inward;
-    return {at_, length / norm(way) * way, radius_, kSlack};
+    const Vec3 inward = (-1 / norm(at_)) * at_, displacement = random_point(random_, 1) + random_.uniform(-0.2, 1) * inward;
+    return {at_, length / norm(displacement) * displacement, radius_, kSlack};
   }
-  void go(const Sweep& sweep, const std::optional<SurfaceHit>& hit) { at_ = sweep.from + (hit ? hit->rest : 1.0) * sweep.way; }
+  void go(const Sweep& sweep, const std::optional<SurfaceHit>& hit) { at_ = sweep.from + (hit ? hit->rest : 1.0) * sweep.displacement; }
   std::uint64_t draw() { return random_.next(); }
 
  private:

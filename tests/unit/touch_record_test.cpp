@@ -62,7 +62,7 @@ TEST(TouchRecord, SwingsOfAHandThatHoldsStill) {
   };
   const auto wave = [](double hertz) { return [hertz](double t) { return 2e-3 * std::sin(2 * 3.14159265 * hertz * t); }; };
   EXPECT_NEAR(swing(wave(3), Aim::rests), 4e-3, 1e-6);
-  EXPECT_GT(swing([&](double t) { return 1e-2 * t + wave(3)(t); }, Aim::rests), 2e-3) << "on a way";
+  EXPECT_GT(swing([&](double t) { return 1e-2 * t + wave(3)(t); }, Aim::rests), 2e-3) << "on a path";
   EXPECT_EQ(swing(wave(3), Aim::moves), 0);
   EXPECT_EQ(swing(wave(3), Aim::unknown), 0);
   EXPECT_EQ(swing(wave(0.5), Aim::rests), 0) << "four within two seconds";

@@ -50,17 +50,17 @@ class Reference:
 
     def __init__(self, welcome: Row):
         self.epoch = session.Epoch(welcome.number("tactus.epoch"), 0, 0, welcome.number("tactus.size"), welcome.number("tactus.hash"), 0)
-        self.ways = {DOWN: self.epoch, UP: session.Epoch(0, 0, 0, 0, 0, 0)}
+        self.of_direction = {DOWN: self.epoch, UP: session.Epoch(0, 0, 0, 0, 0, 0)}
         self.found: list[tuple] = []
 
-    def decode(self, way: session.Epoch, number: int, packet: bytes) -> bool:
-        if not way.decoders:
+    def decode(self, epoch: session.Epoch, number: int, packet: bytes) -> bool:
+        if not epoch.decoders:
             return False
-        substream, payload = way.decoders.split(packet)
+        substream, payload = epoch.decoders.split(packet)
         try:
-            decoded = session.decode_numbered(way.decoders.substreams[substream], number, payload)
+            decoded = session.decode_numbered(epoch.decoders.substreams[substream], number, payload)
         except StreamError as error:  # a packet of a deformable object that was sent again and is there already, or comes too late
-            assert substream > 0 and number < way.newest and error.rule in ("R-PKT-4", "R-PKT-5"), (number, substream, error)
+            assert substream > 0 and number < epoch.newest and error.rule in ("R-PKT-4", "R-PKT-5"), (number, substream, error)
             self.found.append((number, substream, 0, 0))
             return False
         self.found.append((number, substream, int(decoded.key), decoded.tick))
@@ -70,19 +70,19 @@ class Reference:
         """(number, substream, key, tick) of the packets that this datagram completes."""
         self.found = []
         direction = row.number("tactus.direction")
-        way = self.ways[direction]
-        way.decode = lambda _, number, packet: self.decode(way, number, packet)
+        epoch = self.of_direction[direction]
+        epoch.decode = lambda _, number, packet: self.decode(epoch, number, packet)
         body = row.bytes[:-4]
-        number = way.extend(struct.unpack("<H", body[:2])[0] >> 2)
-        way.received.add(number)
-        way.newest = max(way.newest, number)
+        number = epoch.extend(struct.unpack("<H", body[:2])[0] >> 2)
+        epoch.received.add(number)
+        epoch.newest = max(epoch.newest, number)
         assert number == row.number("tactus.number"), row
         for kind, e in parts_of(body):
             if kind in (datagram.FRAGMENT, datagram.PACKET_PART) or kind == datagram.PIECE and direction == DOWN:
-                way.take_part(0, number, kind, datagram.elements_of(kind, direction, e))
+                epoch.take_part(0, number, kind, datagram.elements_of(kind, direction, e))
         self.epoch.begin()
-        if self.epoch.scene and not self.ways[UP].decoders:
-            self.ways[UP].decoders = SceneDecoder(device_scene(self.epoch.scene))
+        if self.epoch.scene and not self.of_direction[UP].decoders:
+            self.of_direction[UP].decoders = SceneDecoder(device_scene(self.epoch.scene))
         return self.found
 
 
@@ -170,8 +170,8 @@ def check_counts(rows: list[Row], client: dict) -> list[Row]:
     captured, traffic = client["captured"], client["traffic"]
     assert count[UP, True] + count[UP, False] == captured["up"]["datagrams"], (count, client)
     assert count[DOWN, True] + count[DOWN, False] == captured["down"]["datagrams"], (count, client)
-    for way, direction in (("up", UP), ("down", DOWN)):
-        assert captured[way]["bytes"] == sum(len(r.bytes) for r in rows if r.number("tactus.direction") == direction)
+    for name, direction in (("up", UP), ("down", DOWN)):
+        assert captured[name]["bytes"] == sum(len(r.bytes) for r in rows if r.number("tactus.direction") == direction)
     assert count[UP, False] == traffic["sent"]["datagrams"], (count, traffic)
     leaves = [r for r in rows if r.number("tactus.kind") == datagram.LEAVE and r.number("tactus.direction") == UP]
     assert [r.number("tactus.reason") for r in leaves] == [0, 0, 0], leaves

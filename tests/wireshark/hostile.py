@@ -143,12 +143,12 @@ def sealed(body: bytes, epoch: int, direction: int) -> bytes:
     return session.sealed(body, 0 if without else epoch, direction)
 
 
-def way_of(direction: int, client: tuple = CLIENT) -> tuple:
+def ends_of(direction: int, client: tuple = CLIENT) -> tuple:
     return (client, SERVER) if direction == UP else (SERVER, client)
 
 
 def bases(rows: list[Row], rng: random.Random) -> list[list[tuple[int, bytes]]]:
-    """Direction and bytes before the check of datagrams, those of a kind together: what the session said, and what it had no reason to."""
+    """Direction and bytes before the check of datagrams, those of a kind together: what the session sent, and what it had no reason to."""
     kinds: dict[tuple, list] = {}
     for row in rows:
         kind = (row.number("tactus.direction"), row.number("tactus.form"), row["tactus.kind"], row["tactus.part.type"])
@@ -158,7 +158,7 @@ def bases(rows: list[Row], rng: random.Random) -> list[list[tuple[int, bytes]]]:
     join = next(row.bytes[:-4] for row in rows if row.number("tactus.kind") == session.JOIN)
     kinds["join"] = [(UP, join[:at] + byte + join[at + 1:]) for at, byte in ((2, b"t"), (6, b"\2"), (7, b"\2"))]  # magic, version, role
     kinds["refusal"] = [(DOWN, session.head(session.HANDSHAKE, session.REFUSAL) + rng.randbytes(8) + b"\x02")]
-    kinds["said"] = [(UP, parts + ack + part(session.BUTTONS, bytes(8)) + part(session.STATE, b"\1") + part(session.HASH, bytes(7)))]
+    kinds["received"] = [(UP, parts + ack + part(session.BUTTONS, bytes(8)) + part(session.STATE, b"\1") + part(session.HASH, bytes(7)))]
     paces = part(session.PACE, b"\x07\x03") + part(session.PACE, b"\xff\xff\xff\xff\x0f\xff\xff\xff\xff\x3f")
     kinds["paces"] = [(DOWN, parts + ack + part(session.CLOCK, b"\x05") + paces + part(session.PACKET_PART, b"\1abc"))]
     kinds["fragment"] = [(d, parts + ack + part(session.FRAGMENT, b"\x01\x00\x02\x03" + bytes(n))) for d in (UP, DOWN) for n in (5, 1150)]
@@ -182,7 +182,7 @@ def shown_rules(row: Row) -> set:
 
 def check_syntax(path: pathlib.Path, rows: list[Row], count: int, rng: random.Random) -> str:
     """Resealed mutants: their checks hold, so that all depends on the syntax."""
-    start = [Sent(*way_of(r.number("tactus.direction")), r.bytes) for r in rows[:8]]
+    start = [Sent(*ends_of(r.number("tactus.direction")), r.bytes) for r in rows[:8]]
     epoch = rows[1].number("tactus.own_epoch")
     mutants, groups = [], bases(rows, rng)
     while len(mutants) < count:
@@ -195,7 +195,7 @@ def check_syntax(path: pathlib.Path, rows: list[Row], count: int, rng: random.Ra
     sent = list(start)
     for i, (direction, mutant) in enumerate(mutants):
         own = is_handshake(mutant) and not comes_wrong(mutant, direction)
-        sent.append(Sent(*way_of(direction, (f"198.51.{100 + i // 40000}.7", 20000 + i % 40000) if own else CLIENT), mutant))
+        sent.append(Sent(*ends_of(direction, (f"198.51.{100 + i // 40000}.7", 20000 + i % 40000) if own else CLIENT), mutant))
     write_capture(path, sent)
     broken = 0
     for (direction, mutant), row in zip(mutants, rows_of(path)[len(start):], strict=True):
@@ -211,13 +211,13 @@ def check_syntax(path: pathlib.Path, rows: list[Row], count: int, rng: random.Ra
 
 def check_damage(path: pathlib.Path, rows: list[Row], count: int, rng: random.Random) -> str:
     """Damaged on the way: the check does not hold. Some are cut by the capture, too."""
-    start = [Sent(*way_of(r.number("tactus.direction")), r.bytes) for r in rows[:8]]
+    start = [Sent(*ends_of(r.number("tactus.direction")), r.bytes) for r in rows[:8]]
     sent, bad = list(start), 0
     while len(sent) < count:
         base = rng.choice(rows)
         mutant = mutate(base.bytes, rng)
         captured = rng.randrange(28, 60) if rng.randrange(8) == 0 else None
-        sent.append(Sent(*way_of(base.number("tactus.direction")), mutant, captured))
+        sent.append(Sent(*ends_of(base.number("tactus.direction")), mutant, captured))
     write_capture(path, sent)
     epoch, known = rows[1].number("tactus.own_epoch"), {r.bytes for r in rows}
     for mutant, row in zip(sent[len(start):], rows_of(path, "-2")[len(start):], strict=True):
@@ -264,7 +264,7 @@ def check_values(path: pathlib.Path, rng: random.Random) -> str:
         client, epoch = ("198.51.100.3", 30000 + i), rng.randrange(1, 1 << 64)
         welcome = session.head(session.HANDSHAKE, session.WELCOME) + bytes(8) + b"\0" + struct.pack("<QH", epoch, 0)
         welcome += session.varint(len(text)) + struct.pack("<Q", session.fnv1a(text)) + b"\0" + bytes(8)
-        sent += [Sent(*way_of(d, client), sealed(b, epoch, d)) for d, b in [(DOWN, welcome), *before, (direction, body)]]
+        sent += [Sent(*ends_of(d, client), sealed(b, epoch, d)) for d, b in [(DOWN, welcome), *before, (direction, body)]]
         wanted[len(sent)] = rule
     write_capture(path, sent)
     for number, row in enumerate(rows_of(path), start=1):
@@ -285,14 +285,14 @@ def check_sealed() -> str:
 
 
 def check_middle(path: pathlib.Path, rows: list[Row]) -> str:
-    """A capture that begins after the join: everything is recognised by port, and no check is said to be good or bad."""
+    """A capture that begins after the join: everything is recognised by port, and no check is shown as good or bad."""
     late = [r for r in rows if r.number("tactus.form") != session.HANDSHAKE][10:]
-    write_capture(path, [Sent(*way_of(r.number("tactus.direction")), r.bytes) for r in late])
+    write_capture(path, [Sent(*ends_of(r.number("tactus.direction")), r.bytes) for r in late])
     for before, row in zip(late, rows_of(path), strict=True):
         assert row.number("tactus.check.status") == 2 and row["tactus.number"] == "" and not shown_rules(row), row
         for name in ("tactus.direction", "tactus.part.type", "tactus.ack.newest", "tactus.packet"):
             assert row[name] == before[name], (name, row, before)
-    write_capture(path, [Sent(s, t, r.bytes) for r in late for s, t in [way_of(r.number("tactus.direction"), ("198.51.100.9", 9))]])
+    write_capture(path, [Sent(s, t, r.bytes) for r in late for s, t in [ends_of(r.number("tactus.direction"), ("198.51.100.9", 9))]])
     other = rows_of(path, "-o", "tactus.port:9999")
     assert all("tactus" not in row["frame.protocols"] for row in other), "foreign datagrams were taken for a session's"
     return f"{len(late)} datagrams of a session that began before"

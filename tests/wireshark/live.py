@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """The dissector over a live session: `tactus serve`, `tactus link` and `tactus join` on the loopback of a network namespace of their
-own, caught by dumpcap. Each end reports what it sent and heard; the capture must say the same.
+own, caught by dumpcap. Each end reports what it sent and heard; the capture must show the same.
 
   live.py TACTUS        ends with 77 where tshark is missing or the system makes no namespace
 """

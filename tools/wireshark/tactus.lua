@@ -519,9 +519,9 @@ local function add_parts(tree, d)
     end
     local kind = type_range:uint()
     local part = tree:add(f.part, d.tvb:range(from, r.at + size - from))
-    local ways = kind == PACE and { "buttons", "pace" } or kind == PIECES and { "report", "piece" } or kind == STATE and { "state", "seat" } or
+    local names = kind == PACE and { "buttons", "pace" } or kind == PIECES and { "report", "piece" } or kind == STATE and { "state", "seat" } or
       kind == HASH and { "hash", "baselines" } or {}
-    part:append_text(": " .. (ways[d.direction == UP and 1 or 2] or types[kind] or "reserved"))
+    part:append_text(": " .. (names[d.direction == UP and 1 or 2] or types[kind] or "reserved"))
     part:add(f["part.type"], type_range)
     part:add(f["part.size"], size_range, exact)
     if kind < last or kind == 0 or (kind > 8 and kind < 64) or (only[kind] and only[kind] ~= d.direction) or
@@ -644,7 +644,7 @@ local function remember(d, bytes, form, value)
 end
 
 local function add_body(tree, tvb, d, form, value)
-  local way = d.direction == UP and "up   " or "down "
+  local direction = d.direction == UP and "up   " or "down "
   if form == HANDSHAKE and kinds[value] then
     local comes = value == LEAVE or (value == JOIN) == (d.direction == UP)
     d.fresh = d.fresh and comes
@@ -652,14 +652,14 @@ local function add_body(tree, tvb, d, form, value)
     local word = add_handshake[value](r, tree, d)
     if not comes then breaks(tree, "R-SES-2") end
     if r.broken or r:left() > 0 then breaks(tree, "R-SES-3") end
-    return way .. word
+    return direction .. word
   elseif form == PARTS or form == PACKET then
-    local head = way .. "#" .. (d.number or value .. "?") .. " "
+    local head = direction .. "#" .. (d.number or value .. "?") .. " "
     if form == PARTS then return head .. add_parts(tree, d) end
     return head .. add_packet(tree, tvb:range(2, d.stop - 2), d.epoch, d.direction, d.number, d.fresh)
   end
   breaks(tree, "R-SES-2")
-  return way .. "unknown form or kind"
+  return direction .. "unknown form or kind"
 end
 
 local function dissect(tvb, pinfo, root)

@@ -174,7 +174,7 @@ class Sender(Handle):
         call(core().tactus_sender_acknowledge, self.handle, packet.substream, packet.sequence)
 
     def set_link(self, answer_ticks: int, loss: float) -> None:
-        """The way to the receiver: ticks until a packet is acknowledged (0: not known), and the fraction that is lost."""
+        """The link to the receiver: ticks until a packet is acknowledged (0: not known), and the fraction that is lost."""
         call(core().tactus_sender_set_link, self.handle, answer_ticks, loss)
 
     def state_hash(self, substream: int = 0) -> int:

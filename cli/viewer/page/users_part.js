@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Users: their devices with the way of the last second, what they touch, and the forces on their hands.
+// Users: their devices with the path of the last second, what they touch, and the forces on their hands.
 import {
   BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, Group, Line, LineBasicMaterial, Mesh, MeshBasicMaterial,
   MeshStandardMaterial, RingGeometry, SphereGeometry, Vector3,

@@ -29,7 +29,7 @@ constexpr Study kStudies[]{
     {"join", "how long a client takes to join over a line", join_point},
     {"signals", "what the devices and forces of a recording cost", signals_point},
     {"push", "a push along x, tick by tick", push_point},
-    {"ways", "ways of interpolation, sent the same packets", ways_point},
+    {"interpolations", "kinds of interpolation, sent the same packets", interpolations_point},
     {"rates", "packets to a client that is sent object states or forces", rates_point},
     {"touch", "what users of a scene feel behind a network", touch_point},
     {"press", "users press a one-dimensional object through a network", press_point},

@@ -20,7 +20,7 @@ Json signals_point(Request& request);
 
 // For `tactus reproduce`: simulations of chapter 3 ...
 Json push_point(Request& request);
-Json ways_point(Request& request);
+Json interpolations_point(Request& request);
 Json rates_point(Request& request);
 // ... and simulations and models of chapter 4.
 Json touch_point(Request& request);

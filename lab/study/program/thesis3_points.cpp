@@ -50,8 +50,8 @@ class Watcher {
 
   explicit Watcher(Receiver receiver) : receiver_(std::move(receiver)) {}
 
-  static Result<Watcher> create(const SharedScene& scene, Interpolation way) {
-    TACTUS_TRY(Receiver receiver, Receiver::create(scene, {.replica = {.interpolation = way}, .limits = {}}));
+  static Result<Watcher> create(const SharedScene& scene, Interpolation interpolation) {
+    TACTUS_TRY(Receiver receiver, Receiver::create(scene, {.replica = {.interpolation = interpolation}, .limits = {}}));
     return Watcher(std::move(receiver));
   }
   Result<void> take(std::span<const Packet> packets) {
@@ -180,10 +180,10 @@ Json push_point(Request& request) {
           {"update", std::move(update)}};
 }
 
-Json ways_point(Request& request) {
+Json interpolations_point(Request& request) {
   const sim::Scene scene = scene_of(request);
   const sim::ChannelOptions channel = channel_of(request);
-  const auto names = request.get<std::vector<std::string>>("ways");
+  const auto names = request.get<std::vector<std::string>>("interpolations");
   const sim::Grip grip = grip_of_request(request);
   const auto seed = request.get<std::uint64_t>("seed", 1);
   const bool wants_curves = request.get("curves", false);
@@ -209,10 +209,10 @@ Json ways_point(Request& request) {
     if (wants_curves) curves.push_back(row);
   }
   Json out{{"packets_per_s", static_cast<double>(sent) / (sim::kTick * static_cast<double>(simulation.ticks()))},
-           {"ways", Json::array()}};
+           {"interpolations", Json::array()}};
   for (std::size_t i = 0; i < watchers.size(); ++i) {
     const Watcher::Effect& e = watchers[i].effect();
-    out["ways"].push_back({{"way", names[i]},
+    out["interpolations"].push_back({{"interpolation", names[i]},
                            {"ticks_in_contact", e.ticks},
                            {"ticks_over", e.over},
                            {"worst_ratio", e.worst},

@@ -135,11 +135,11 @@ Json deformable_impedance(Request& request) {
 }
 
 /// [s] of datagrams sent each 10 ms and answered at once, in the order of their arrival.
-std::vector<double> round_trips(const sim::LinkOptions& way, std::uint32_t count) {
+std::vector<double> round_trips(const sim::LinkOptions& there, std::uint32_t count) {
   constexpr sim::Microseconds kStep = 10'000, kNever = INT64_MAX;
-  sim::LinkOptions back = way;
-  back.seed = way.seed + 1;
-  auto up = need(sim::Link::create(way), "link");
+  sim::LinkOptions back = there;
+  back.seed = there.seed + 1;
+  auto up = need(sim::Link::create(there), "link");
   auto down = need(sim::Link::create(back), "link");
   std::vector<double> out;
   for (std::uint32_t sent = 0; out.size() < count;) {
@@ -251,10 +251,10 @@ Json impedance_point(Request& request) {
 }
 
 Json round_trips_point(Request& request) {
-  const sim::LinkOptions way = link_of(request, "link");
+  const sim::LinkOptions there = link_of(request, "link");
   const auto count = request.get<std::uint32_t>("count", 360'000);
   request.check_all_known();
-  return {{"round_trip_ms", round_trips(way, count)}};
+  return {{"round_trip_ms", round_trips(there, count)}};
 }
 
 Json stiffness_map_point(Request& request) {
