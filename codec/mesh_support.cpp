@@ -2,7 +2,6 @@
 #include <tactus/scene/mesh_support.h>
 
 #include <tactus/deformable/deformable_decoder.h>
-#include <tactus/elastic/driven_shape.h>
 #include <tactus/mesh/basis.h>
 #include <tactus/mesh/graph.h>
 #include <tactus/scene/elastic_syntax.h>
@@ -20,10 +19,6 @@ std::shared_ptr<const VertexHierarchy> hierarchy(const DeformableObject& object)
   return std::make_shared<const VertexHierarchy>(vertex_hierarchy(object));
 }
 
-void follow(DeformableDecoder& decoder, const Scene& scene, const DeformableObject& object, const DevicePath& path) {
-  decoder.know(std::make_unique<DrivenShape>(scene, object, path));
-}
-
 }  // namespace
 
 const MeshSupport kMeshSupport{.broken_rule = broken_deformable_rule,
@@ -32,7 +27,6 @@ const MeshSupport kMeshSupport{.broken_rule = broken_deformable_rule,
                                .elastic_work = elastic_work,
                                .compute_basis = compute_basis,
                                .hierarchy = hierarchy,
-                               .decoder = DeformableDecoder::create,
-                               .follow = follow};
+                               .decoder = DeformableDecoder::create};
 
 }  // namespace tactus

@@ -16,18 +16,20 @@
 namespace tactus {
 
 struct Receiver::Impl {
-  Impl(SharedScene of, const ReceiverOptions& options)
+  Impl(SharedScene of, const ReceiverOptions& options, KnownDevice of_client)
       : scene(std::move(of)),
+        device(std::move(of_client)),
         rigid(*scene, options.limits, initial_states(*scene), *scene),
-        deformables(decoders(*scene, options.limits)),
-        replica(*scene, options.replica, shapes(deformables)) {
+        deformables(decoders(*scene, options.limits, device)),
+        replica(*scene, options.replica, shapes(deformables), device.path.get()) {
     if (scene->loads) loads.emplace(*scene, options.limits, initial_loads(*scene), *scene);
   }
 
   using Decoders = std::vector<std::unique_ptr<DeformableDecoder>>;
-  static Decoders decoders(const Scene& scene, const DecodeLimits& limits) {
+  static Decoders decoders(const Scene& scene, const DecodeLimits& limits, const KnownDevice& device) {
     Decoders out;
-    for (std::size_t i = 0; i < scene.deformables.size(); ++i) out.push_back(scene.mesh_support()->decoder(scene, i, limits));
+    for (std::size_t i = 0; i < scene.deformables.size(); ++i)
+      out.push_back(scene.mesh_support()->decoder(scene, i, limits, device.shape_of(scene, scene.deformables[i])));
     return out;
   }
   static std::vector<DeformableDecoder*> shapes(const Decoders& decoders) {
@@ -42,7 +44,7 @@ struct Receiver::Impl {
                                std::optional<std::int64_t> now) noexcept;
 
   SharedScene scene;
-  std::shared_ptr<const DevicePath> path;
+  KnownDevice device;
   SubstreamDecoder<RigidDecoder> rigid;
   Decoders deformables;
   std::optional<SubstreamDecoder<LoadDecoder>> loads;
@@ -54,10 +56,18 @@ Receiver::Receiver(Receiver&&) noexcept = default;
 Receiver& Receiver::operator=(Receiver&&) noexcept = default;
 Receiver::~Receiver() = default;
 
-Result<Receiver> Receiver::create(SharedScene scene, const ReceiverOptions& options) try {
+Result<Receiver> Receiver::create(SharedScene scene, const ReceiverOptions& options) {
+  return create_with(std::move(scene), options, {});
+}
+
+Result<Receiver> Receiver::create(SharedScene scene, const ReceiverOptions& options, std::shared_ptr<const DevicePath> device) {
+  return create_with(std::move(scene), options, KnownDevice(std::move(device)));
+}
+
+Result<Receiver> Receiver::create_with(SharedScene scene, const ReceiverOptions& options, KnownDevice device) try {
   TACTUS_CHECK(check_scene(*scene, options.limits));
   TACTUS_CHECK(Replica::check(options.replica, *scene));
-  return Receiver(std::make_unique<Impl>(std::move(scene), options));
+  return Receiver(std::make_unique<Impl>(std::move(scene), options, std::move(device)));
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
@@ -92,15 +102,6 @@ Result<DecodedPacket> Receiver::push_numbered(std::uint64_t number, std::span<co
 }
 
 void Receiver::skip_number(std::uint64_t number) noexcept { impl_->replica.skip_number(number); }
-
-void Receiver::know(std::shared_ptr<const DevicePath> path) {
-  impl_->path = std::move(path);
-  impl_->replica.know(*impl_->path);
-  const Scene& scene = *impl_->scene;
-  for (std::size_t i = 0; i < scene.deformables.size(); ++i)
-    if (const DeformableObject& object = scene.deformables[i]; object.body)
-      scene.mesh_support()->follow(*impl_->deformables[i], scene, object, *impl_->path);
-}
 
 Replica& Receiver::replica() noexcept { return impl_->replica; }
 const SharedScene& Receiver::scene() const noexcept { return impl_->scene; }

@@ -18,6 +18,7 @@
 namespace tactus {
 
 class DevicePath;
+struct KnownDevice;
 
 struct ReceiverOptions {
   ReplicaOptions replica{};
@@ -41,6 +42,9 @@ class Receiver {
  public:
   /// err  invalid_argument R-API-4: a replica option; limit_exceeded R-STR-14, R-STR-18 the scene is beyond the limits, R-API-11 memory
   static Result<Receiver> create(SharedScene scene, const ReceiverOptions& options = {});
+  /// The same where the device of this client is known, as its server knows it: what it drives is shown where it moves it, packet or none.
+  /// in   device  its path; null: it is not known
+  static Result<Receiver> create(SharedScene scene, const ReceiverOptions& options, std::shared_ptr<const DevicePath> device);
 
   /// Decode a packet and apply it to the replica. An error leaves the receiver unchanged, but R-PKT-7 drops its baselines.
   /// in   packet  as Packet::bytes
@@ -64,9 +68,6 @@ class Receiver {
   /// This number of a session is not lost, and no packet of rigid objects has it: the replica need not bend over it.
   void skip_number(std::uint64_t number) noexcept;
 
-  /// Know the device of this client, as its server does: what it drives is shown where it moves it, packet or none.   allocates
-  void know(std::shared_ptr<const DevicePath> path);
-
   /// What the client shows.
   Replica& replica() noexcept;
 
@@ -89,6 +90,7 @@ class Receiver {
 
  private:
   struct Impl;
+  static Result<Receiver> create_with(SharedScene scene, const ReceiverOptions& options, KnownDevice device);
   explicit Receiver(std::unique_ptr<Impl> impl) noexcept;
   std::unique_ptr<Impl> impl_;
 };

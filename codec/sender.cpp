@@ -32,15 +32,17 @@ struct SharedTruth::Impl {
 };
 
 struct Sender::Impl {
-  Impl(SharedScene of, const SenderOptions& options, std::shared_ptr<SharedTruth> of_others)
+  Impl(SharedScene of, const SenderOptions& options, std::shared_ptr<SharedTruth> of_others, KnownDevice of_receiver)
       : scene(std::move(of)),
         shared(std::move(of_others)),
         own(shared ? nullptr : std::make_unique<SharedTruth::Impl>(*scene, options.triggers)),
+        device(std::move(of_receiver)),
         rigid(*scene, with(options.policy, Baseline::previous), 0, max_rigid_packet(*scene), 1, initial_states(*scene), *scene,
-              options.triggers, options.policy, truth().rigid, truth().work ? &*truth().work : nullptr) {
+              options.triggers, options.policy, truth().rigid, truth().work ? &*truth().work : nullptr, device.path.get()) {
     const SenderPolicy policy = with(options.policy, Baseline::acknowledged);
     for (std::size_t i = 0; i < scene->deformables.size(); ++i)
-      deformables.push_back(DeformableEncoder::create(*scene, i, options.deformable, policy));
+      deformables.push_back(
+          DeformableEncoder::create(*scene, i, options.deformable, policy, device.shape_of(*scene, scene->deformables[i])));
     if (scene->loads)
       loads.emplace(*scene, policy, load_substream(*scene), max_load_packet(*scene), 1, initial_loads(*scene), *scene,
                     options.load, policy.baseline, *truth().loads);
@@ -62,7 +64,7 @@ struct Sender::Impl {
   SharedScene scene;
   std::shared_ptr<SharedTruth> shared;
   std::unique_ptr<SharedTruth::Impl> own;  // where it is not shared
-  std::shared_ptr<const DevicePath> path;
+  KnownDevice device;
   SubstreamEncoder<RigidEncoder> rigid;
   std::vector<std::unique_ptr<DeformableEncoder>> deformables;
   std::optional<SubstreamEncoder<LoadEncoder>> loads;
@@ -162,12 +164,22 @@ Result<void> SharedTruth::read(std::int64_t tick, const Truth& truth) noexcept {
 std::span<const HeldPart> SharedTruth::held() const noexcept { return impl_->held.parts(); }
 
 Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options) {
-  return create(std::move(scene), options, nullptr);
+  return create_with(std::move(scene), options, nullptr, {});
 }
 
-Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options, std::shared_ptr<SharedTruth> truth) try {
+Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options, std::shared_ptr<SharedTruth> truth) {
+  return create_with(std::move(scene), options, std::move(truth), {});
+}
+
+Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options, std::shared_ptr<SharedTruth> truth,
+                              std::shared_ptr<const DevicePath> device) {
+  return create_with(std::move(scene), options, std::move(truth), KnownDevice(std::move(device)));
+}
+
+Result<Sender> Sender::create_with(SharedScene scene, const SenderOptions& options, std::shared_ptr<SharedTruth> truth,
+                                   KnownDevice device) try {
   TACTUS_TRY(const SenderOptions used, checked(*scene, options));
-  return Sender(std::make_unique<Impl>(std::move(scene), used, std::move(truth)));
+  return Sender(std::make_unique<Impl>(std::move(scene), used, std::move(truth), std::move(device)));
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
@@ -189,15 +201,6 @@ void Sender::request_key() noexcept {
 }
 
 void Sender::request_rigid_key() noexcept { impl_->rigid.request_key(); }
-
-void Sender::know(std::shared_ptr<const DevicePath> path) {
-  impl_->path = std::move(path);
-  impl_->rigid.codec().know(*impl_->path);
-  const Scene& scene = *impl_->scene;
-  for (std::size_t i = 0; i < scene.deformables.size(); ++i)
-    if (const DeformableObject& object = scene.deformables[i]; object.body)
-      impl_->deformables[i]->know(std::make_unique<DrivenShape>(scene, object, *impl_->path));
-}
 
 void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept {
   if (substream == 0) impl_->rigid.acknowledge(sequence);

@@ -21,6 +21,7 @@
 namespace tactus {
 
 class DevicePath;
+struct KnownDevice;
 
 struct SenderOptions {
   RigidTriggers triggers{};
@@ -95,6 +96,12 @@ class Sender {
   static Result<Sender> create(SharedScene scene, const SenderOptions& options = {});
   /// The same with a truth that others share: read() it before each encode().   pre  it is of the same scene and options
   static Result<Sender> create(SharedScene scene, const SenderOptions& options, std::shared_ptr<SharedTruth> truth);
+  /// The same where the device of the one receiver is known, which may drive objects (SceneBuilder::driven()): those that it pushes or holds
+  /// are sent when they leave the way that the receiver works out from its own device. Else the scene's driven objects are coded as any other.
+  /// in   truth   null: of its own
+  ///      device  where the device is at each tick that is encoded, with all packets up to then; null: it is not known
+  static Result<Sender> create(SharedScene scene, const SenderOptions& options, std::shared_ptr<SharedTruth> truth,
+                               std::shared_ptr<const DevicePath> device);
 
   /// Evaluate one tick and code the packets that it needs.
   /// in   tick  strictly increasing, below 2^32 - 1
@@ -144,11 +151,6 @@ class Sender {
   /// per packet.
   void forget_last(std::size_t substream) noexcept;
 
-  /// Know the device of the one receiver, which may drive objects then (SceneBuilder::driven()): those that it pushes or holds are sent when
-  /// they leave the path that the receiver computes from its own device. Without it the scene's driven objects are coded as any other.
-  /// in   path  where the device is at each tick that is encoded, with all packets up to then.   allocates
-  void know(std::shared_ptr<const DevicePath> path);
-
   const SharedScene& scene() const noexcept;
   /// State of a rigid object as a receiver of all packets has it, by its place in the scene.
   const RigidState& object(std::uint32_t object) const noexcept;
@@ -161,6 +163,8 @@ class Sender {
 
  private:
   struct Impl;
+  static Result<Sender> create_with(SharedScene scene, const SenderOptions& options, std::shared_ptr<SharedTruth> truth,
+                                    KnownDevice device);
   explicit Sender(std::unique_ptr<Impl> impl) noexcept;
   std::unique_ptr<Impl> impl_;
 };

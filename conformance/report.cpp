@@ -181,18 +181,17 @@ class Client {
     const Interpolation interpolation = wanted.value_or(Interpolation::none);
     return scene.is_smoothed && interpolation != Interpolation::playout ? Interpolation::none : interpolation;
   }
-  static Result<Client> create(const SharedScene& scene, std::optional<Interpolation> interpolation) {
+  /// in   device  the first moving object is the client's device, in the server's own ticks
+  static Result<Client> create(const SharedScene& scene, std::optional<Interpolation> interpolation, bool device) {
+    std::shared_ptr<DevicePath> path;
+    if (device) {
+      path = std::make_shared<DevicePath>(scene);
+      path->shift(0, 0);
+    }
     TACTUS_TRY(Receiver receiver,
-               Receiver::create(scene, {.replica = {.interpolation = interpolation_in(*scene, interpolation)}, .limits = kLimits}));
+               Receiver::create(scene, {.replica = {.interpolation = interpolation_in(*scene, interpolation)}, .limits = kLimits}, path));
     const std::int64_t delay = interpolation == Interpolation::playout ? kPlayoutDelay : 0;
-    return Client(scene, std::move(receiver), interpolation.has_value(), delay);
-  }
-
-  /// The first moving object is the client's device, in the server's own ticks.
-  void has_device() {
-    path_ = std::make_shared<DevicePath>(scene_);
-    path_->shift(0, 0);
-    receiver_.know(path_);
+    return Client(scene, std::move(receiver), interpolation.has_value(), delay, std::move(path));
   }
 
   /// Decodes the packet of a record and writes its line.
@@ -234,8 +233,8 @@ class Client {
  private:
   static constexpr std::int64_t kPlayoutDelay = 100;  // ticks
 
-  Client(SharedScene scene, Receiver receiver, bool looks, std::int64_t delay)
-      : scene_(std::move(scene)), receiver_(std::move(receiver)), looks_(looks), delay_(delay) {}
+  Client(SharedScene scene, Receiver receiver, bool looks, std::int64_t delay, std::shared_ptr<DevicePath> path)
+      : scene_(std::move(scene)), receiver_(std::move(receiver)), looks_(looks), delay_(delay), path_(std::move(path)) {}
 
   void look_until(std::int64_t tick) {
     for (; tick_ < tick; ++tick_) all_.add64(shown_at(tick_));
@@ -266,8 +265,7 @@ class Client {
 
 Result<void> report(std::span<const std::uint8_t> file, std::optional<Interpolation> replica, bool device, std::ostream& out) {
   TACTUS_TRY(auto reader, StreamFileReader::open(file, kLimits));
-  TACTUS_TRY(auto client, Client::create(reader.scene(), replica));
-  if (device) client.has_device();
+  TACTUS_TRY(auto client, Client::create(reader.scene(), replica, device));
   write_header_line(*reader.scene(), out);
   for (std::uint64_t number = 0;; ++number) {
     TACTUS_TRY(const auto record, reader.next());

@@ -188,7 +188,8 @@ bool ServerConnection::repairs() const noexcept {
 }
 
 Result<void> ClientParts::make() {
-  TACTUS_TRY(sender, Sender::create(scene, options, truth));
+  if (device && scene->has_paths()) path = std::make_shared<DevicePath>(device);
+  TACTUS_TRY(sender, Sender::create(scene, options, truth, path));
   if (device) {
     TACTUS_TRY(receiver, Receiver::create(device));
   }
@@ -203,6 +204,7 @@ ClientParts ServerConnection::parts() const noexcept {
                   .truth = served_.truth,
                   .options = served_.sender,
                   .repaired = repairs(),
+                  .path = {},
                   .sender = {},
                   .receiver = {}};
   if (out.repaired) out.options.policy.baseline = Baseline::repaired;
@@ -243,11 +245,8 @@ bool ServerConnection::take(std::uint64_t now, ClientParts& parts) {
     exchange_->receiver = std::move(parts.receiver);
     const auto& limits = served_.scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual;
     device_clock_.emplace(served_.scene->tick_rate, PlayoutOptions{.fixed = 0}, static_cast<std::int64_t>(limits.stale));
-    if (served_.scene->has_paths()) {
-      exchange_->path = std::make_shared<DevicePath>(served_.device);
-      exchange_->sender->know(exchange_->path);
-      pace_.emplace(served_.scene->tick_rate);
-    }
+    exchange_->path = std::move(parts.path);
+    if (exchange_->path) pace_.emplace(served_.scene->tick_rate);
   }
   exchange_->pieces.reset();
   state_ = *next;

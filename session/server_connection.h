@@ -43,6 +43,7 @@ struct ClientParts {
   std::shared_ptr<SharedTruth> truth;
   SenderOptions options;
   bool repaired = false;
+  std::shared_ptr<DevicePath> path;  // null: the device drives nothing
   std::optional<Sender> sender;
   std::optional<Receiver> receiver;
 

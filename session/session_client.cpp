@@ -261,19 +261,21 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     TACTUS_TRY(const auto bytes, current->pieces.declaration());
     TACTUS_TRY(const ParsedScene parsed, parse_scene(bytes, options.limits));
     const SharedScene& scene = parsed.scene;
+    SharedScene device;                // null: an observer has none
+    std::shared_ptr<DevicePath> path;  // null: it drives nothing
+    if (options.role != Role::observer) {
+      TACTUS_TRY(device, device_scene(*scene));
+      if (scene->has_paths()) path = std::make_shared<DevicePath>(device);
+    }
     TACTUS_TRY(Receiver receiver,
-               Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}, .limits = options.limits}));
+               Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}, .limits = options.limits}, path));
     current->exchange.receive_with(std::move(receiver));
     const ForceFade::Limits& limits = scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual;
     current->playout.emplace(scene->tick_rate, options.playout, static_cast<std::int64_t>(limits.stale));
-    if (options.role == Role::observer) return {};
-    TACTUS_TRY(SharedScene device, device_scene(*scene));
+    if (!device) return {};
     TACTUS_TRY(auto sender, Sender::create(std::move(device), device_sender_options(options.device)));
     fade.set_limits(limits);
-    if (scene->has_paths()) {
-      current->exchange.path = std::make_shared<DevicePath>(sender.scene());
-      current->exchange.receiver->know(current->exchange.path);
-    }
+    current->exchange.path = std::move(path);
     current->exchange.send_with(std::move(sender));
     current->device.emplace(scene->tick_rate, options.senses_velocity);
     current->device_start = now;

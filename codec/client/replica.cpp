@@ -126,9 +126,10 @@ Result<void> Replica::check(const ReplicaOptions& options, const Scene& scene) n
   return {};
 }
 
-Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes)
+Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes,
+                 const DevicePath* device)
     : scene_(scene),
-      predictor_(scene),
+      predictor_(scene, device),
       interpolation_(options.interpolation),
       fraction_(static_cast<std::uint32_t>(std::floor(options.fraction * 65536 + 0.5))),
       shortest_(static_cast<std::int64_t>(std::floor(options.shortest * scene.tick_rate + 0.5))),

@@ -115,11 +115,10 @@ class Replica {
  public:
   /// R-API-4: not 0 < fraction <= 1, not 0 <= shortest <= longest <= 10 s, or smoothing of the client's own in a smoothed scene.
   static Result<void> check(const ReplicaOptions& options, const Scene& scene) noexcept;
-  /// pre  check(); scene and decoders outlive the replica.   in  shapes  one per deformable object
-  Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes);
-
-  /// Know the device of this client, which may drive objects.   in  path  outlives the replica
-  void know(const DevicePath& path) { predictor_.know(path); }
+  /// pre  check(); scene, decoders and path outlive the replica
+  /// in   shapes  one per deformable object;  device  path of this client's device, which may drive objects; null: it is not known
+  Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes,
+          const DevicePath* device = nullptr);
 
   /// Apply a decoded packet of the rigid objects at tick `arrival`: its own, or later when the network delayed it. An earlier
   /// arrival counts as the packet's tick, or as that of the object's last update, if that is later. With Interpolation::playout the

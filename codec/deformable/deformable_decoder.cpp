@@ -46,8 +46,11 @@ namespace {
 template <class Codec>
 class Of final : public DeformableDecoder {
  public:
-  Of(const Scene& scene, std::size_t index, const DecodeLimits& limits, typename Codec::State initial)
-      : object_(scene.deformables[index]), stream_(scene, limits, std::move(initial), scene, object_), number_(index + 1) {}
+  template <class... More>
+  Of(const Scene& scene, std::size_t index, const DecodeLimits& limits, typename Codec::State initial, More&&... more)
+      : object_(scene.deformables[index]),
+        stream_(scene, limits, std::move(initial), scene, object_, std::forward<More>(more)...),
+        number_(index + 1) {}
 
   Result<DecodedPacket> decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept override {
     TACTUS_TRY(DecodedPacket decoded, stream_.decode(packet, now));
@@ -62,9 +65,6 @@ class Of final : public DeformableDecoder {
   std::span<const Vec3i> displacements() const noexcept override { return stream_.newest().displacement; }
   std::span<const Vec3i> displacements_at(std::int64_t tick) noexcept override { return predict(stream_.newest(), tick); }
   std::span<const Vec3i> displacements_of(std::int64_t tick) noexcept override { return predict(stream_.at(tick), tick); }
-  void know(std::unique_ptr<FollowedShape> shape) noexcept override {
-    if constexpr (requires { stream_.codec().know(std::move(shape)); }) stream_.codec().know(std::move(shape));
-  }
   bool holds(std::uint64_t number) const noexcept override { return stream_.holds(number); }
   std::int64_t tick() const noexcept override { return stream_.newest().tick; }
   std::uint64_t state_hash() const noexcept override { return tactus::state_hash(object_, stream_.newest()); }
@@ -81,11 +81,12 @@ class Of final : public DeformableDecoder {
 
 }  // namespace
 
-std::unique_ptr<DeformableDecoder> DeformableDecoder::create(const Scene& scene, std::size_t object, const DecodeLimits& limits) {
+std::unique_ptr<DeformableDecoder> DeformableDecoder::create(const Scene& scene, std::size_t object, const DecodeLimits& limits,
+                                                             std::unique_ptr<FollowedShape> driven) {
   const DeformableObject& o = scene.deformables[object];
   if (o.profile == DeformableProfile::thesis)
     return std::make_unique<Of<ThesisDecoder>>(scene, object, limits, initial_thesis_state(o));
-  return std::make_unique<Of<MainDecoder>>(scene, object, limits, initial_main_state(o));
+  return std::make_unique<Of<MainDecoder>>(scene, object, limits, initial_main_state(o), std::move(driven));
 }
 
 }  // namespace tactus

@@ -111,12 +111,14 @@ class MainDecoder {
   using State = MainState;
   static constexpr RuleName kTickRule = "R-DEF-8";
 
+  /// in   driven  what the device of the client does to an object with a body; null: no device is known
   /// pre  `scene` outlives the decoder
-  MainDecoder(const Scene& scene, const DeformableObject& object)
+  MainDecoder(const Scene& scene, const DeformableObject& object, std::unique_ptr<FollowedShape> driven)
       : object_(object),
         baseline_span_(scene.baseline_span),
         reader_(object, scene.hierarchy(object)),
         next_(initial_main_state(object)),
+        driven_(std::move(driven)),
         shown_(object.body ? object.rest.size() : 0) {}
 
   /// err  malformed R-RNG-4
@@ -126,7 +128,6 @@ class MainDecoder {
   void commit(const MainState&, MainState& next) noexcept { std::swap(next_, next); }
   std::uint64_t bit() const noexcept { return 8 * std::min<std::uint64_t>(coder_.position(), payload_); }
 
-  void know(std::unique_ptr<FollowedShape> shape) noexcept { driven_ = std::move(shape); }  ///< pre  the object has a body
   /// Displacements shown at a tick not before the state's. Valid until the next call.
   std::span<const Vec3i> predict(const MainState& state, std::int64_t tick) noexcept;
 
@@ -146,12 +147,12 @@ class MainDecoder {
 // ==== deformable decoder ====
 // The substream of one deformable object at a receiver, whatever its profile. Internal to the library; Receiver is the way in.
 
-class FollowedShape;
-
 class DeformableDecoder {
  public:
   /// The one place that chooses by profile.   pre  object < scene.deformables.size(), and `scene` outlives the decoder
-  static std::unique_ptr<DeformableDecoder> create(const Scene& scene, std::size_t object, const DecodeLimits& limits);
+  /// in   driven  as of MainDecoder
+  static std::unique_ptr<DeformableDecoder> create(const Scene& scene, std::size_t object, const DecodeLimits& limits,
+                                                   std::unique_ptr<FollowedShape> driven);
   virtual ~DeformableDecoder() = default;
 
   /// in, err  Receiver::push
@@ -164,8 +165,6 @@ class DeformableDecoder {
   virtual std::span<const std::array<std::int32_t, 3>> displacements_at(std::int64_t tick) noexcept = 0;
   /// The same from the newest state held that is not later than the tick, for a client that shows the past. spec/60-client.md 6
   virtual std::span<const std::array<std::int32_t, 3>> displacements_of(std::int64_t tick) noexcept = 0;
-  /// Show what the device of the client does (Receiver::know).   pre  the object has a body
-  virtual void know(std::unique_ptr<FollowedShape> shape) noexcept = 0;
   virtual bool holds(std::uint64_t number) const noexcept = 0;  ///< the state after the packet of this number
   virtual std::int64_t tick() const noexcept = 0;               ///< of the newest packet, 0 before the first
   virtual std::uint64_t state_hash() const noexcept = 0;

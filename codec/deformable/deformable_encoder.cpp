@@ -59,7 +59,8 @@ double default_fraction(const Scene& scene, const DeformableObject& object) noex
 
 }  // namespace
 
-MainEncoder::MainEncoder(const Scene& scene, const DeformableObject& object, const DeformableOptions& options)
+MainEncoder::MainEncoder(const Scene& scene, const DeformableObject& object, const DeformableOptions& options,
+                         std::unique_ptr<FollowedShape> driven)
     : object_(object),
       thresholds_(options.thresholds),
       visual_fraction_(options.visual_fraction.value_or(default_fraction(scene, object))),
@@ -77,7 +78,8 @@ MainEncoder::MainEncoder(const Scene& scene, const DeformableObject& object, con
       error_(object.rest.size()),
       coefficients_(object.basis.steps.size()),
       scaled_(object.basis.steps.size()),
-      projected_(object.basis.steps.size()) {
+      projected_(object.basis.steps.size()),
+      driven_(std::move(driven)) {
   coded_.reserve(object.rest.size());
 }
 
@@ -257,12 +259,13 @@ constexpr double kSomeLoss = 0.003;  // fraction of packets
 template <class Codec>
 class Of final : public DeformableEncoder {
  public:
+  template <class... More>
   Of(const Scene& scene, std::size_t index, const DeformableOptions& options, const SenderPolicy& policy, std::size_t largest,
-     bool layered, typename Codec::State initial)
+     bool layered, typename Codec::State initial, More&&... more)
       : object_(scene.deformables[index]),
         layered_(layered),
-        stream_(scene, layered ? chained(policy) : policy, index + 1, largest, layered ? 2 : 1, initial, scene, object_,
-                options) {}
+        stream_(scene, layered ? chained(policy) : policy, index + 1, largest, layered ? 2 : 1, initial, scene, object_, options,
+                std::forward<More>(more)...) {}
 
   void read(const ShapeTruth& truth) noexcept override { stream_.codec().read(truth.shape(), truth.touch()); }
   Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept override {
@@ -272,9 +275,6 @@ class Of final : public DeformableEncoder {
   /// Where nothing is lost an acknowledgement is late at most.
   void set_link(const LinkState& link) noexcept override { stream_.set_answer(link.loss >= kSomeLoss ? link.answer : 0); }
   void set_bound_scale(double factor) noexcept override { stream_.codec().set_bound_scale(factor); }
-  void know(std::unique_ptr<FollowedShape> shape) noexcept override {
-    if constexpr (requires { stream_.codec().know(std::move(shape)); }) stream_.codec().know(std::move(shape));
-  }
   void request_key() noexcept override { stream_.request_key(); }
   void forget_last() noexcept override { stream_.forget_last(); }
   void acknowledge(std::uint16_t sequence) noexcept override { stream_.acknowledge(sequence); }
@@ -342,12 +342,14 @@ Result<void> DeformableEncoder::check(const DeformableOptions& options) noexcept
 }
 
 std::unique_ptr<DeformableEncoder> DeformableEncoder::create(const Scene& scene, std::size_t object,
-                                                             const DeformableOptions& options, const SenderPolicy& policy) {
+                                                             const DeformableOptions& options, const SenderPolicy& policy,
+                                                             std::unique_ptr<FollowedShape> driven) {
   const DeformableObject& o = scene.deformables[object];
   if (o.profile == DeformableProfile::thesis)
     return std::make_unique<Of<ThesisEncoder>>(scene, object, options, policy, max_packet(o), options.layered,
                                                initial_thesis_state(o));
-  return std::make_unique<Of<MainEncoder>>(scene, object, options, policy, max_packet(o), o.layered, initial_main_state(o));
+  return std::make_unique<Of<MainEncoder>>(scene, object, options, policy, max_packet(o), o.layered, initial_main_state(o),
+                                           std::move(driven));
 }
 
 }  // namespace tactus

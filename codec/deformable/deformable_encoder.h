@@ -38,8 +38,10 @@ class MainEncoder {
  public:
   using State = MainState;
 
+  /// in   driven  what the device of the client does to an object with a body; null: no device is known
   /// pre  `scene` outlives the encoder
-  MainEncoder(const Scene& scene, const DeformableObject& object, const DeformableOptions& options);
+  MainEncoder(const Scene& scene, const DeformableObject& object, const DeformableOptions& options,
+              std::unique_ptr<FollowedShape> driven);
 
   /// The truth of one frame, on the grid.   pre  both live until the last encode() of the frame
   void read(std::span<const Vec3i> truth, const SurfaceTouch* touch) noexcept {
@@ -47,7 +49,6 @@ class MainEncoder {
     touch_ = touch;
   }
   void set_bound_scale(double factor) noexcept { bound_scale_ = factor; }
-  void know(std::unique_ptr<FollowedShape> shape) noexcept { driven_ = std::move(shape); }  ///< pre  the object has a body
   /// time O(vertices * (1 + modes)), no allocation
   Result<Payload> encode(const EncodeRequest<MainState>& request, std::span<std::uint8_t> out) noexcept;
   void commit(const MainState&, MainState& next) noexcept { std::swap(next_, next); }
@@ -133,9 +134,9 @@ class DeformableEncoder {
  public:
   /// R-API-4: an option is negative, NaN or too large.
   static Result<void> check(const DeformableOptions& options) noexcept;
-  /// The one place that chooses by profile.   pre  check(), object < scene.deformables.size(), and `scene` outlives the encoder
+  /// The one place that chooses by profile.   in   driven  as of MainEncoder.   pre  check(), object < scene.deformables.size(), and `scene` outlives the encoder
   static std::unique_ptr<DeformableEncoder> create(const Scene& scene, std::size_t object, const DeformableOptions& options,
-                                                   const SenderPolicy& policy);
+                                                   const SenderPolicy& policy, std::unique_ptr<FollowedShape> driven);
   virtual ~DeformableEncoder() = default;
 
   /// Take the truth of one frame; changes nothing else.   pre  it is new, and lives until the last encode() of the frame
@@ -147,8 +148,6 @@ class DeformableEncoder {
   virtual bool is_layered() const noexcept = 0;
   virtual void set_link(const LinkState& link) noexcept = 0;  ///< nothing without Baseline::acknowledged, or with layers
   virtual void set_bound_scale(double factor) noexcept = 0;      ///< of all thresholds.   pre  factor >= 1
-  /// Show what the device of the client does (Sender::know).   pre  the object has a body
-  virtual void know(std::unique_ptr<FollowedShape> shape) noexcept = 0;
   virtual void request_key() noexcept = 0;
   virtual void forget_last() noexcept = 0;
   virtual void acknowledge(std::uint16_t sequence) noexcept = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include <tactus/deformable/displacement.h>
 #include <tactus/rigid/device_path.h>
@@ -29,6 +30,12 @@ std::int64_t left_after(std::int64_t shapes) noexcept {
 }
 
 }  // namespace
+
+KnownDevice::KnownDevice(std::shared_ptr<const DevicePath> known)
+    : path(std::move(known)),
+      make([](const Scene& scene, const DeformableObject& object, const DevicePath& way) -> std::unique_ptr<FollowedShape> {
+        return std::make_unique<DrivenShape>(scene, object, way);
+      }) {}
 
 DrivenShape::DrivenShape(const Scene& scene, const DeformableObject& object, const DevicePath& path)
     : path_(path),

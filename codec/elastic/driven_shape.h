@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,22 @@
 namespace tactus {
 
 class DevicePath;
+
+/// The device of a client as its Sender and its Receiver are given it; empty: it is not known.
+struct KnownDevice {
+  KnownDevice() = default;
+  /// in   known  null: as empty
+  explicit KnownDevice(std::shared_ptr<const DevicePath> known);
+
+  /// What it does to an object; null: the object has no body, or no device is known.   pre  scene and object outlive it.   allocates
+  std::unique_ptr<FollowedShape> shape_of(const Scene& scene, const DeformableObject& object) const {
+    return path && object.body ? make(scene, object, *path) : nullptr;
+  }
+
+  std::shared_ptr<const DevicePath> path;
+  // A pointer, so that a program that knows no device links nothing of elastic bodies.
+  std::unique_ptr<FollowedShape> (*make)(const Scene&, const DeformableObject&, const DevicePath&) = nullptr;
+};
 
 class DrivenShape final : public FollowedShape {
  public:

@@ -363,7 +363,7 @@ double PredictorChoice::error_of(Predictor predictor, std::uint32_t object, Rigi
 PredictorChoice::Record PredictorChoice::record_of(Predictor predictor, std::uint32_t object, const RigidState& truth,
                                                    const PermittedError& permitted) const noexcept {
   Record out;
-  while (const auto from = past_->start(object, truth.tick, out.served)) {
+  while (const auto from = past_.start(object, truth.tick, out.served)) {
     const double e = error_of(predictor, object, *from, truth, permitted);
     if (e > 1) break;
     out.error += e;
@@ -376,15 +376,15 @@ bool PredictorChoice::drives_on(std::uint32_t object, const RigidState& truth, c
                                 const RigidState& current) const noexcept {
   if (current.predictor != Predictor::driven) return false;
   std::size_t n = 0;
-  auto from = past_->start(object, truth.tick, n);
-  while (from && from->tick > current.tick) from = past_->start(object, truth.tick, ++n);
+  auto from = past_.start(object, truth.tick, n);
+  while (from && from->tick > current.tick) from = past_.start(object, truth.tick, ++n);
   return from && error_of(Predictor::linear, object, *from, truth, permitted) > 1;
 }
 
 bool PredictorChoice::is_driven(std::uint32_t object, const RigidState& truth, const PermittedError& permitted, Predictor other,
                                 std::size_t served) const noexcept {
   for (std::size_t n = served + 1; n-- > 0;) {
-    const auto from = past_->start(object, truth.tick, n);
+    const auto from = past_.start(object, truth.tick, n);
     if (!from || from->contact == DrivenContact{}) continue;
     return error_of(Predictor::driven, object, *from, truth, permitted) < error_of(other, object, *from, truth, permitted);
   }

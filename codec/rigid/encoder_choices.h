@@ -272,14 +272,10 @@ class PastStates {
 
 class PredictorChoice {
  public:
-  /// pre  both outlive this, and the scene has motion constants
-  PredictorChoice(const Scene& scene, const PastStates& past) : scene_(scene), past_(&past), predictor_(scene) {}
-
-  /// The receiver's device, and a past with what is signalled of it.   RigidPredictor::know
-  void know(const DevicePath& path, const PastStates& past) {
-    past_ = &past;
-    predictor_.know(path);
-  }
+  /// in   past    where the device is known, with what is signalled of it;  device  as of RigidPredictor
+  /// pre  all outlive this, and the scene has motion constants
+  PredictorChoice(const Scene& scene, const PastStates& past, const DevicePath* device = nullptr)
+      : scene_(scene), past_(past), predictor_(scene, device) {}
 
   /// in   truth       the object's state of now; where a device drives it, its contact is signalled
   /// in   is_touched  by a device, known or not;  current  the update that it replaces
@@ -307,7 +303,7 @@ class PredictorChoice {
                  std::size_t served) const noexcept;
 
   const Scene& scene_;
-  const PastStates* past_;
+  const PastStates& past_;
   RigidPredictor predictor_;
 };
 

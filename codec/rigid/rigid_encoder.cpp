@@ -51,10 +51,10 @@ Result<void> RigidEncoder::check(const RigidTriggers& triggers, const GridExpone
 }
 
 RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, const SenderPolicy& policy, const RigidTruth& truth,
-                           RigidWork* work)
+                           RigidWork* work, const DevicePath* device)
     : scene_(scene),
       triggers_(triggers),
-      predictor_(scene),
+      predictor_(scene, truth.past() != nullptr ? device : nullptr),
       acknowledges_(policy.baseline == Baseline::acknowledged),
       early_(policy.baseline == Baseline::previous ? 1 : kEarly),
       heartbeat_(static_cast<std::int64_t>(std::ceil(triggers.heartbeat * scene.tick_rate))),
@@ -62,7 +62,8 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, co
       truth_(truth),
       work_(work),
       awake_(scene.objects.size()) {
-  if (truth.past() != nullptr) choice_.emplace(scene, *truth.past());
+  if (predictor_.knows_device()) driven_.emplace(scene, *device);
+  if (truth.past() != nullptr) choice_.emplace(scene, driven_ ? driven_->past : *truth.past(), device);
   pending_.reserve(scene.moving().size());
   before_.reserve(scene.moving().size());
   if (work != nullptr) {
@@ -75,13 +76,6 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, co
     sent_.push_back({.path = {.object = i, .state = initial_state(scene, i)}});
   if (scene.interest) levels_.emplace(scene);
   set_bound_scale(1);
-}
-
-void RigidEncoder::know(const DevicePath& path) {
-  if (!scene_.driven || !choice_) return;
-  predictor_.know(path);
-  driven_.emplace(scene_, path);
-  choice_->know(path, driven_->past);
 }
 
 void RigidEncoder::set_bound_scale(double factor) noexcept {

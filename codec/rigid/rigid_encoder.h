@@ -39,15 +39,16 @@ class RigidEncoder {
 
   /// R-API-4: a threshold is negative, NaN or finer than the grid.
   static Result<void> check(const RigidTriggers& triggers, const GridExponents& grid) noexcept;
-  /// pre  check(), and all that is given outlives the encoder.   in   work  that it shares with other encoders of this truth; null: with none
+  /// in   work    that it shares with other encoders of this truth; null: with none
+  ///      device  path of the receiver's device; null: it is not known
+  /// pre  check(), and all that is given outlives the encoder
   RigidEncoder(const Scene& scene, const RigidTriggers& triggers, const SenderPolicy& policy, const RigidTruth& truth,
-               RigidWork* work);
+               RigidWork* work, const DevicePath* device);
 
   /// Code the tick that the truth was read for.
   /// time O(objects that move, are touched, or whose prediction does), < 1 us per object, < 4 us per update; what others found out with the
   ///      same: 50 ns and 100 ns. What rests costs nothing. No allocation.
   Result<Payload> encode(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
-  void know(const DevicePath& path);  ///< of the receiver's device.   pre  it outlives the encoder.   allocates
   void commit(const RigidStates& base, RigidStates& next) noexcept;
   void acknowledge(std::uint64_t number) noexcept;
   void forget_last() noexcept;

@@ -332,11 +332,8 @@ RigidPose RigidPredictor::pose(const RigidState& state, std::int64_t tick) const
   return pose;
 }
 
-void RigidPredictor::know(const DevicePath& path) {
-  if (!scene_.driven) return;
-  bodies_.resize(scene_.objects.size());
-  path_ = &path;
-}
+RigidPredictor::RigidPredictor(const Scene& scene, const DevicePath* device)
+    : scene_(scene), path_(scene.driven ? device : nullptr), bodies_(path_ != nullptr ? scene.objects.size() : 0) {}
 
 RigidPose RigidPredictor::shown(std::uint32_t object, const RigidState& state, std::int64_t tick) const noexcept {
   if (state.predictor != Predictor::driven || path_ == nullptr) return pose(state, tick);

@@ -82,6 +82,9 @@ class RigidPredictor {
  public:
   /// pre  `scene` outlives the predictor
   explicit RigidPredictor(const Scene& scene) noexcept : scene_(scene) {}
+  /// The same where the device of the client is known, which may drive objects.
+  /// in   device  its path, which outlives the predictor; null: it is not known.   allocates if the scene has driven objects
+  RigidPredictor(const Scene& scene, const DevicePath* device);
 
   /// The pose at `tick`.
   ///   linear     x(t) = x + v dt;  q(t) = exp(w dt / 2) q;  dt = min(t - state.tick, max_extrapolation)     spec 40-rigid 4
@@ -91,8 +94,6 @@ class RigidPredictor {
   ///   driven     as linear: packets are coded on what every receiver knows
   RigidPose pose(const RigidState& state, std::int64_t tick) const noexcept;
 
-  /// Know the device of the client.   in  path  outlives the predictor.   allocates if the scene has driven objects
-  void know(const DevicePath& path);
   bool knows_device() const noexcept { return path_ != nullptr; }
   /// The pose at `tick` as it is shown: pose(), but where the device drives the object, DrivenBody::pose().
   /// pre  those of pose(); `state` is one of `object`.   time that of both

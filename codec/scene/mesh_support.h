@@ -13,7 +13,7 @@
 namespace tactus {
 
 class DeformableDecoder;
-class DevicePath;
+class FollowedShape;
 
 struct MeshSupport {
   /// Rules of one object, its basis and its body.   pre  those before it in this list found none
@@ -25,9 +25,9 @@ struct MeshSupport {
   void (*compute_basis)(DeformableObject& object);  ///< if it asks for one that both ends compute
   std::shared_ptr<const VertexHierarchy> (*hierarchy)(const DeformableObject& object);
 
-  std::unique_ptr<DeformableDecoder> (*decoder)(const Scene& scene, std::size_t object, const DecodeLimits& limits);
-  /// Let the shape that a decoder shows follow a device.   pre  the object has a body; scene and path outlive the decoder
-  void (*follow)(DeformableDecoder& decoder, const Scene& scene, const DeformableObject& object, const DevicePath& path);
+  /// DeformableDecoder::create
+  std::unique_ptr<DeformableDecoder> (*decoder)(const Scene& scene, std::size_t object, const DecodeLimits& limits,
+                                                std::unique_ptr<FollowedShape> shape);
 };
 
 extern const MeshSupport kMeshSupport;

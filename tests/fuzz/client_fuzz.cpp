@@ -17,16 +17,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool knows_device = size > 0 && data[0] / 20 % 2 == 1;
   if (knows_device) spec.driven = {{{1075200, 116053, {286331, 286331, 1}, 128, 1049}}};
   const SharedScene scene = Scene::create(std::move(spec)).value();
-  RigidPredictor predictor(*scene);
   DevicePath path(device_scene(*scene).value());
   path.shift(0, 3);
+  const DevicePath* known = knows_device ? &path : nullptr;
+  RigidPredictor predictor(*scene, known);
   ReplicaOptions options;
   constexpr Interpolation kInterpolations[] = {Interpolation::none, Interpolation::linear, Interpolation::playout, Interpolation::hermite,
                                      Interpolation::blending};
   if (size > 0) options.interpolation = kInterpolations[data[0] % 5];
   if (!Replica::check(options, *scene)) options.interpolation = Interpolation::none;
-  Replica replica(*scene, options, {});
-  if (knows_device) predictor.know(path), replica.know(path);
+  Replica replica(*scene, options, {}, known);
   constexpr std::size_t kStep = 40;
   std::int64_t now = 0;
   std::uint64_t number = 1;

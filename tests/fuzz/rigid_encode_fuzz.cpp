@@ -58,12 +58,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.triggers.visual_position = 1e-5 * in.u16();
   options.triggers.visual_rotation = 1e-4 * in.u16();
   options.policy.key_interval = 0.01 * in.u8();
-  auto sender = Sender::create(scene, options);
-  if (!sender) return 0;
-  auto receiver = Receiver::create(scene).value();
   const auto path = std::make_shared<DevicePath>(device_scene(*scene).value());
   path->shift(0, 0);
-  if (scene->driven) sender->know(path), receiver.know(path);
+  const auto known = scene->driven ? path : nullptr;
+  auto sender = Sender::create(scene, options, nullptr, known);
+  if (!sender) return 0;
+  auto receiver = Receiver::create(scene, {}, known).value();
   RigidSample sample;
   for (std::int64_t tick = 0; in.ok(); tick += 1 + in.u8() % 8) {
     RigidSample next = sample;

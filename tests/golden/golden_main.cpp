@@ -97,12 +97,12 @@ bool run(const Case& c) {
   options.triggers.reduction = c.reduction;
   ReceiverOptions smooth;
   smooth.replica.interpolation = c.profile == RigidProfile::main ? Interpolation::none : Interpolation::linear;
-  auto sender = Sender::create(*scene, options);
-  auto receiver = Receiver::create(*scene, smooth);
-  if (!sender || !receiver) return false;
   const auto path = std::make_shared<DevicePath>(device_scene(**scene).value());
   path->shift(0, 0);
-  if (c.is_driven) sender->know(path), receiver->know(path);
+  const auto known = c.is_driven ? path : nullptr;
+  auto sender = Sender::create(*scene, options, nullptr, known);
+  auto receiver = Receiver::create(*scene, smooth, known);
+  if (!sender || !receiver) return false;
   Fnv1a stream, states, shown;
   std::vector<RigidSample> samples(bodies.size());
   std::mt19937_64 random(7);

@@ -261,11 +261,11 @@ TEST(DrivenBody, OfADeviceThatIsNotKnownItIsFree) {
 TEST(DrivenBody, WithoutItsDeviceAStateIsLinear) {
   const auto scene = driven_scene();
   RigidState state = driven_state(*scene, {{{}, {}}, {0.1, 0, 0.2}, {1, 2, 3}}, held_at({}));
-  RigidPredictor predictor(*scene);
-  const RigidPose coded = predictor.pose(state, 70);
-  EXPECT_EQ(predictor.shown(0, state, 70), coded);
+  const RigidPredictor without(*scene);
+  const RigidPose coded = without.pose(state, 70);
+  EXPECT_EQ(without.shown(0, state, 70), coded);
   const auto path = path_along(scene, 100, [](std::int64_t) { return Vec3{0.05, 0, 0}; });
-  predictor.know(*path);
+  const RigidPredictor predictor(*scene, path.get());
   EXPECT_NE(predictor.shown(0, state, 70), coded);
   EXPECT_EQ(predictor.pose(state, 70), coded) << "packets are coded on what every receiver knows";
   state.predictor = Predictor::linear;

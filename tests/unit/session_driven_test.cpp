@@ -209,11 +209,10 @@ Cost cost(const char* name, std::uint64_t seed, bool known) {
   options.triggers.weber_fraction = 0.04;
   const auto declares = sim::Server::create(scene, {.codec = sim::ServerCodec{options, {}, true}}).value();
   const SharedScene declared = declares->stream_scene();
-  auto sender = Sender::create(declared, options).value();
-  auto receiver = Receiver::create(declared).value();
   const auto path = std::make_shared<DevicePath>(device_scene(*declared).value());
   path->shift(0, 0);
-  if (known) sender.know(path), receiver.know(path);
+  auto sender = Sender::create(declared, options, nullptr, known ? path : nullptr).value();
+  auto receiver = Receiver::create(declared, {}, known ? path : nullptr).value();
   auto simulation = sim::Simulation::create(scene, {.seed = seed, .grip = {}, .channel = {}}).value();
   FrameTruth truth(simulation.info());
   Cost out;
