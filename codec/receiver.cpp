@@ -7,6 +7,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_decoder.h>
+#include <tactus/elastic/driven_shape.h>
 #include <tactus/load/load_decoder.h>
 #include <tactus/packet/substream.h>
 #include <tactus/packet/substream_decoder.h>
