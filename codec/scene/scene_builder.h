@@ -112,7 +112,7 @@ class SceneBuilder {
   /// twice the distance, and not at all of those beyond `reach`. For worlds that are larger than what one sees of them.
   SceneBuilder& interest(double full, double reach);
   /// Declare the bounds that hold at a client that gets every packet.
-  SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
+  SceneBuilder& declare_bounds(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
 
   /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface, stiffness or world does not fit its grid; R-API-14 driven()
   ///      before any rigid object or elastic() before any deformable one; those of Scene::create
