@@ -29,7 +29,7 @@ struct RecordedSample {
   Vec3 force{};  ///< [N] on the hand
 };
 
-/// What the hand of one user of a trace did and what was rendered to it, by time, at its own rate, slower, faster, or again and again. All of it is read
+/// What the hand of one user of a trace did, and the force on it, by time, at its own rate, slower, faster, or again and again. All of it is read
 /// when it is opened, so that no tick waits for a file.
 class Recording {
  public:

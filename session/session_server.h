@@ -79,11 +79,11 @@ class SessionServer {
   Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;
   /// As Sender::held(), of the last submit() that found a live client.   out  valid until the next call
   std::span<const HeldPart> held() const noexcept;
-  /// [us] The clock that is signalled to clients: by it tick n is at create() or replace_scene() + n ticks. Before the first tick that of the program.
+  /// [us] The clock signalled to clients: by it tick n is at create() or replace_scene() + n ticks. Before the first tick that of the program.
   std::uint64_t clock(std::uint64_t now) const noexcept;
   /// Another scene: clients get a new epoch, and show the old one until they hold the new. Ticks begin anew.   err  as create()
   Result<void> replace_scene(SharedScene scene, std::uint64_t now);
-  /// What a participant plays, from 1; 0: nothing; kOnlyLooksOn: nothing, as it may not. The client is sent it. Who comes
+  /// What a participant plays, from 1; 0: nothing; kOnlyLooksOn: nothing, as it may not. It is signalled. Who comes
   /// back with the token of its session has the seat that it had.
   void seat(std::uint16_t client, std::uint8_t seat) noexcept;
   /// Take leave of a client, or of all.

@@ -118,7 +118,7 @@ TACTUS_API tactus_status tactus_server_held(const tactus_server* server, tactus_
 /* Another scene; ticks begin anew. */
 TACTUS_API tactus_status tactus_server_replace_scene(tactus_server* server, const tactus_scene* scene, uint64_t now,
                                                      tactus_error* error);
-/* What a participant plays, from 1; 0: nothing; TACTUS_ONLY_LOOKS_ON. The client is sent it. Who comes back with its token has the seat that it had. */
+/* What a participant plays, from 1; 0: nothing; TACTUS_ONLY_LOOKS_ON. It is signalled. Who comes back with its token has the seat that it had. */
 TACTUS_API tactus_status tactus_server_seat(tactus_server* server, uint32_t client, uint32_t seat, tactus_error* error);
 /* in   reason  TACTUS_LEAVE_... */
 TACTUS_API tactus_status tactus_server_close_client(tactus_server* server, uint32_t client, uint32_t reason, tactus_error* error);

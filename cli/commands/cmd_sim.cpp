@@ -261,7 +261,8 @@ Outcome check_options(const SimOptions& options) {
                             fmt::format("Give at most {:.0f}s.", std::floor(kMostTicks / sim::kTickRate)));
   if (!options.pcap.empty() && !options.has_network())
     return refuse_arguments("--pcap: without a network there are no datagrams", "Give a network with --link.");
-  for (const auto& [name, why] : {std::pair{"--playout", "nothing is late"}, {"--client-model-scale", "there are no clients whose models it could scale"}})
+  for (const auto& [name, why] :
+       {std::pair{"--playout", "nothing is late"}, {"--client-model-scale", "there are no clients whose models it could scale"}})
     if (!options.has_network() && options.common.command->find(name)->count() > 0)
       return refuse_arguments(fmt::format("{}: without a network {}", name, why), "Give --link or --uplink, or leave it out.");
   return {};
@@ -386,9 +387,10 @@ void setup_sim(Command& app, Action& action) {
       .add_option("--stiffness-map", options->stiffness_map,
                   "Also write the local stiffness of deformable objects (CSV, and a figure beside it)")
       ->type_name("FILE");
-  command.add_flag("--check", options->check,
-                   "Simulate the same again beside it with half the step, and with a shape in each tick, and report the difference "
-                   "in motion, shapes, forces, energies and the work of hands [costs two to four times the time]");
+  command.add_flag(
+      "--check", options->check,
+      "Simulate the same again beside it with half the step, and with a shape in each tick, and report the difference "
+      "in motion, shapes, forces, energies and the work of hands [costs two to four times the time]");
   command.add_flag("--codec", options->codec,
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");

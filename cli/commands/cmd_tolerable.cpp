@@ -138,7 +138,7 @@ Outcome run(const TolerableOptions& options) {
 void setup_tolerable(Command& app, Action& action) {
   auto options = std::make_shared<TolerableOptions>();
   Command& command =
-      app.add_command("tolerable", "Compute how much delay the touches of a recording or a scene tolerate until it is perceptible");
+      app.add_command("tolerable", "Compute how much delay the touches of a recording or a scene tolerate unnoticed");
   command
       .add_option("TRACE", options->input, "Recording with contacts (MCAP), - is standard input; or a scene, which is simulated")
       ->type_name("")
