@@ -68,10 +68,10 @@ def state_of(receiver: Receiver) -> dict:
 
 
 # ---- Blocks to bytes ------------------------------------------------------------------------------------------------
-def record(kind: int, payload: bytes, said: dict) -> bytes:
-    size = said.get("size", len(payload))
+def record(kind: int, payload: bytes, fields: dict) -> bytes:
+    size = fields.get("size", len(payload))
     data = bytes([kind]) + varint_bytes(size) + payload
-    return data + (bytes_of(said["crc"]) if "crc" in said else zlib.crc32(data).to_bytes(4, "little"))
+    return data + (bytes_of(fields["crc"]) if "crc" in fields else zlib.crc32(data).to_bytes(4, "little"))
 
 
 def split_elements(elements: list[Element], names: tuple) -> tuple[dict, list[Element]]:
@@ -81,7 +81,7 @@ def split_elements(elements: list[Element], names: tuple) -> tuple[dict, list[El
 def packet_of(decoders: Decoders, text: str, before: list[bytes]) -> bytes:
     """A packet record. Its tick is the packet's unless `after` says otherwise."""
     head, _, rest = text.rpartition(":")
-    said = dict(parse(head))
+    fields = dict(parse(head))
     elements = parse(rest)
     over, elements = split_elements(elements, ("size", "crc", "after"))
     packet = None
@@ -91,13 +91,13 @@ def packet_of(decoders: Decoders, text: str, before: list[bytes]) -> bytes:
         if decoders.scene:
             decoders.follow(data)
     else:
-        part = said.get("of")
+        part = fields.get("of")
         decoder = decoders.of(part)
         if decoder is None:
             raise CaseError(f"there is no substream {part}")
         kept = state_of(decoder.receiver)
         install(Writer)
-        data, packet = given_packet(decoder, said.get("number", next_number(decoder.receiver)), elements)
+        data, packet = given_packet(decoder, fields.get("number", next_number(decoder.receiver)), elements)
         data = (bytes([part]) if decoders.several() else b"") + data
         if any(name in ("then", "append", "list_bytes") for name, _ in elements):
             decoder.receiver.__dict__.update(kept)
@@ -111,12 +111,12 @@ def packet_of(decoders: Decoders, text: str, before: list[bytes]) -> bytes:
 
 
 def other_record(block: Block) -> bytes:
-    said, elements = split_elements(parse(block.text), ("size", "crc"))
+    fields, elements = split_elements(parse(block.text), ("size", "crc"))
     if block.kind == "index":
-        return record(INDEX, b"".join(varint_bytes(value) for _, value in elements), said)
+        return record(INDEX, b"".join(varint_bytes(value) for _, value in elements), fields)
     if block.kind == "trailer":
-        return record(TRAILER, elements[0][1].to_bytes(8, "little"), said)
-    return record(elements[0][1], b"".join(bytes_of(value) for _, value in elements[1:]), said)
+        return record(TRAILER, elements[0][1].to_bytes(8, "little"), fields)
+    return record(elements[0][1], b"".join(bytes_of(value) for _, value in elements[1:]), fields)
 
 
 def declaration_elements(text: str, scenes: dict[str, list[Element]]) -> list[Element]:
@@ -264,10 +264,10 @@ class Records:
 
     def head(self, part: int, sequence: int) -> str:
         """Which packet it is; a number that follows the newest one is left out."""
-        said = [("of", part)] if self.given.several() else []
+        fields = [("of", part)] if self.given.several() else []
         if sequence != next_number(self.given.scene.substreams[part].receiver):
-            said.append(("number", sequence))
-        return " ".join(words(said)) + (":" if said else "")
+            fields.append(("number", sequence))
+        return " ".join(words(fields)) + (":" if fields else "")
 
     def edited(self, number: int, head: str, elements: list[Element], packet: bytes):
         """With other bytes after what is decoded. How many that are is tried out on the decoders of the given side."""

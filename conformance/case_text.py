@@ -140,7 +140,7 @@ class Block:
 class Case:
     name: str
     what: str
-    said: dict = field(default_factory=dict)                # members of the stem's list
+    fields: dict = field(default_factory=dict)              # members of the stem's list
     blocks: list[Block] = field(default_factory=list)
     line: int = 0
 
@@ -158,8 +158,8 @@ def read_cases(file: Path) -> tuple[str, list[Case]]:
             name, _, sentence = line.partition(": ")
             cases.append(Case(name, sentence, {}, [], number))
         elif not line.startswith("    "):
-            if not cases[-1].said:
-                cases[-1].said = parse_said(line)
+            if not cases[-1].fields:
+                cases[-1].fields = parse_fields(line)
             else:
                 kind, _, text = line.strip().partition(" ")
                 cases[-1].blocks.append(Block(kind, text))
@@ -169,31 +169,31 @@ def read_cases(file: Path) -> tuple[str, list[Case]]:
     return what, cases
 
 
-def parse_said(line: str) -> dict:
-    said: dict = {"profile": [], "flags": []}
+def parse_fields(line: str) -> dict:
+    fields: dict = {"profile": [], "flags": []}
     verdict, *members = [part.strip() for part in line.split(";")]
     if verdict == "valid":
-        said["result"] = "valid"
+        fields["result"] = "valid"
     else:
         errc, rule = verdict.split()
-        said.update(result="invalid", errc=errc, rule=rule, rules=[rule])
+        fields.update(result="invalid", errc=errc, rule=rule, rules=[rule])
     for member in members:
         key, _, value = member.partition(" ")
-        said[key] = value if key == "section" else value.split()
-    if "repeat" in said:
-        at, pattern, times = said["repeat"]
-        said["repeat"] = {"at": int(at), "bytes": pattern, "times": int(times)}
-    return said
+        fields[key] = value if key == "section" else value.split()
+    if "repeat" in fields:
+        at, pattern, times = fields["repeat"]
+        fields["repeat"] = {"at": int(at), "bytes": pattern, "times": int(times)}
+    return fields
 
 
-def write_said(said: dict) -> str:
-    members = [said["result"] if said["result"] == "valid" else f"{said['errc']} {said['rule']}"]
+def write_fields(fields: dict) -> str:
+    members = [fields["result"] if fields["result"] == "valid" else f"{fields['errc']} {fields['rule']}"]
     for key in ("section", "rules", "profile", "flags", "args"):
-        value = said.get(key)
-        if value and not (key == "rules" and value == [said.get("rule")]):
+        value = fields.get(key)
+        if value and not (key == "rules" and value == [fields.get("rule")]):
             members.append(f"{key} {value if isinstance(value, str) else ' '.join(value)}")
-    if "repeat" in said:
-        members.append("repeat {at} {bytes} {times}".format(**said["repeat"]))
+    if "repeat" in fields:
+        members.append("repeat {at} {bytes} {times}".format(**fields["repeat"]))
     return "  " + "; ".join(members) + "\n"
 
 

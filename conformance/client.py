@@ -105,11 +105,11 @@ def main() -> int:
     if epoch is None or epoch.decoders is None:
         print("no session", file=sys.stderr)
         return 1
-    said = {"client": epoch.client, "packets": epoch.packets, "epochs": epochs, "round_trip_us": epoch.round_trip and epoch.round_trip[0],
+    report = {"client": epoch.client, "packets": epoch.packets, "epochs": epochs, "round_trip_us": epoch.round_trip and epoch.round_trip[0],
             "state_hashes": [f"{d.state_hash():016x}" for d in epoch.decoders.substreams.values()]}
     if epoch.path:
-        said.update({"paces": len(epoch.path.offsets), "without_effect": sum(not epoch.path.takes_effect(n) for n in epoch.path.states)})
-    print(json.dumps(said))
+        report.update({"paces": len(epoch.path.offsets), "without_effect": sum(not epoch.path.takes_effect(n) for n in epoch.path.states)})
+    print(json.dumps(report))
     return 0
 
 

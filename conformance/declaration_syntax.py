@@ -334,8 +334,8 @@ def given_declaration(elements: list[Element]) -> bytes:
     body(f, flags)
     if given.next_name() is not None:
         raise CaseError(f"the declaration ends before {given.next_name()}")
-    said = given.apart
-    head = FIXED.pack(bytes_of(said.get("magic", digits(MAGIC))), said.get("version", 1), said.get("stream_profile", 0), flags,
-                      said.get("body_size", len(f.out)))
+    apart = given.apart
+    head = FIXED.pack(bytes_of(apart.get("magic", digits(MAGIC))), apart.get("version", 1), apart.get("stream_profile", 0), flags,
+                      apart.get("body_size", len(f.out)))
     data = head + bytes(f.out)
-    return data + (bytes_of(said["crc"]) if "crc" in said else zlib.crc32(data).to_bytes(4, "little"))
+    return data + (bytes_of(apart["crc"]) if "crc" in apart else zlib.crc32(data).to_bytes(4, "little"))

@@ -51,38 +51,38 @@ class SceneDecoder:
 
 # ---- Testee (README.md) ---------------------------------------------------------------------------------------------
 def describe_declaration(scene: Declaration) -> dict:
-    said = {"version": scene.version, "profile": scene.profile, "tick_rate": scene.tick_rate,
+    out = {"version": scene.version, "profile": scene.profile, "tick_rate": scene.tick_rate,
             "grid": [scene.position_exp, scene.velocity_exp, scene.rotation_exp, scene.angular_exp],
             "max_extrapolation": scene.max_extrapolation, "baseline_span": scene.baseline_span,
             "objects": [{"name": item.name, "dof": item.dof} for item in scene.objects]}
     if scene.deformables:
-        said["meshes"] = [{"name": d.name, "profile": d.profile, "vertices": len(d.rest), "triangles": len(d.triangles),
+        out["meshes"] = [{"name": d.name, "profile": d.profile, "vertices": len(d.rest), "triangles": len(d.triangles),
                            "modes": len(d.modes), **({} if d.stiffness is None else {"stiffness": f"{fnv1a(d.stiffness):016x}"})}
                           for d in scene.deformables]
     if scene.loads:
-        said["loads"] = list(scene.loads)
+        out["loads"] = list(scene.loads)
     if scene.motion:
-        said["motion"] = [*scene.motion.gravity, scene.motion.slide_deceleration]
+        out["motion"] = [*scene.motion.gravity, scene.motion.slide_deceleration]
     if scene.driven:
-        said["driven"] = [[d.coupling, d.hold, *d.inertia, d.friction, d.damping] for d in scene.driven.values()]
+        out["driven"] = [[d.coupling, d.hold, *d.inertia, d.friction, d.damping] for d in scene.driven.values()]
     if any(d.body for d in scene.deformables):
         bodies = [(i, d.body) for i, d in enumerate(scene.deformables) if d.body]
-        said["elastic"] = [[i, len(b.rest), len(b.tetrahedra), len(b.materials), len(b.fixed), b.work] for i, b in bodies]
+        out["elastic"] = [[i, len(b.rest), len(b.tetrahedra), len(b.materials), len(b.fixed), b.work] for i, b in bodies]
     if scene.interest:
-        said["interest"] = list(scene.interest)
+        out["interest"] = list(scene.interest)
     if scene.bounds:
-        said["bounds"] = {**({"rigid": scene.bounds.rigid} if scene.bounds.rigid else {}), "meshes": scene.bounds.deformables,
+        out["bounds"] = {**({"rigid": scene.bounds.rigid} if scene.bounds.rigid else {}), "meshes": scene.bounds.deformables,
                           **({"loads": scene.bounds.loads} if scene.bounds.loads else {})}
-    return said
+    return out
 
 
 def describe_packet(packet: Union[Packet, DeformablePacket, LoadPacket]) -> dict:
-    said = {"sequence": packet.sequence, "key": bool(packet.key), "tick": packet.tick}
+    out = {"sequence": packet.sequence, "key": bool(packet.key), "tick": packet.tick}
     if isinstance(packet, LoadPacket):
-        said["loads"] = packet.loads
+        out["loads"] = packet.loads
     else:
-        said.update({"vertices": len(packet.vertices)} if isinstance(packet, DeformablePacket) else {"updates": packet.updates})
-    return {**said, "range": f"{packet.range:08x}", "code": f"{packet.code:08x}"}
+        out.update({"vertices": len(packet.vertices)} if isinstance(packet, DeformablePacket) else {"updates": packet.updates})
+    return {**out, "range": f"{packet.range:08x}", "code": f"{packet.code:08x}"}
 
 
 def lines(data: bytes, mode: Optional[str]) -> Iterator[dict]:

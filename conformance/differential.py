@@ -175,10 +175,10 @@ def compare(options: argparse.Namespace, vectors: Vectors) -> int:
         accepted += wanted[0] == 0
         if wanted[0] == 1:
             rules.add(json.loads(wanted[1][-1])["error"]["rule"])
-        said = first_difference(command + (["--replica", mode] if mode else []), data, wanted)
-        if said:
+        found = first_difference(command + (["--replica", mode] if mode else []), data, wanted)
+        if found:
             differences += 1
-            print(f"case {number} of seed {options.seed}: {said}")
+            print(f"case {number} of seed {options.seed}: {found}")
             if options.keep:
                 (Path(options.keep) / f"{options.seed}-{number}.tct").write_bytes(data)
     print(f"{options.cases} cases, {accepted} accepted, {len(rules)} rules broken, {differences} differences")
@@ -193,14 +193,14 @@ def compare_sessions(options: argparse.Namespace, scripts: Scripts) -> int:
         try:
             lines = list(session.lines(text))
         except Exception as error:                          # a defect of session.py, not of the script
-            said = f"session.py: {error!r}"
+            found = f"session.py: {error!r}"
             lines = []
         else:
-            said = first_difference(command, text.encode("ascii"), (0, [json.dumps(line, separators=(",", ":")) for line in lines]))
+            found = first_difference(command, text.encode("ascii"), (0, [json.dumps(line, separators=(",", ":")) for line in lines]))
         rules |= {line["error"]["rule"] for line in lines if "error" in line}
-        if said:
+        if found:
             differences += 1
-            print(f"script {number} of seed {options.seed}: {said}")
+            print(f"script {number} of seed {options.seed}: {found}")
             if options.keep:
                 (Path(options.keep) / f"{options.seed}-{number}.script").write_text(text, encoding="ascii")
     print(f"{options.cases} scripts, {len(rules)} rules broken, {differences} differences")

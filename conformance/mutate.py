@@ -66,11 +66,11 @@ def answer(vector: Vector) -> list[str]:
     import decoder
     import session
     from conventions import StreamError
-    said: list[str] = []
+    printed: list[str] = []
 
     def say(line: dict) -> bool:
-        said.append(json.dumps(line, separators=(",", ":")))
-        return len(said) <= len(vector.lines) and said[-1] == vector.lines[len(said) - 1]
+        printed.append(json.dumps(line, separators=(",", ":")))
+        return len(printed) <= len(vector.lines) and printed[-1] == vector.lines[len(printed) - 1]
 
     try:
         is_script = "session" in vector.case.traits
@@ -79,7 +79,7 @@ def answer(vector: Vector) -> list[str]:
                 break
     except StreamError as error:
         say({"error": {"errc": error.errc, "rule": error.rule}})
-    return said
+    return printed
 
 
 def try_mutant(module: Module, mutant: Mutant, vectors: list[Vector], pipe: TextIO) -> None:
@@ -137,9 +137,9 @@ class Child:
 
     def lines(self) -> list[str]:
         with open(self.pipe, encoding="ascii") as pipe:
-            said = pipe.read().splitlines()
+            printed = pipe.read().splitlines()
         os.waitpid(self.pid, 0)
-        return said
+        return printed
 
 
 class Trial:
@@ -151,8 +151,8 @@ class Trial:
 
     def outcome(self) -> Outcome:
         """The last line shows it; a child that was stopped leaves that of a hang."""
-        said = self.child.lines()
-        number, how = said[-1].split() if said else ("0", "crash")
+        printed = self.child.lines()
+        number, how = printed[-1].split() if printed else ("0", "crash")
         return Outcome("", "") if how == "none" else Outcome(self.vectors[int(number)].case.id, how)
 
 
@@ -170,12 +170,12 @@ class Suite:
 
     def measure(self) -> None:
         """Runs decoder.py itself."""
-        said = [json.loads(line) for line in Child(try_original, self.vectors).lines()]
-        failing = [v.case.id for v, (right, _, _) in zip(self.vectors, said) if not right]
-        if failing or len(said) < len(self.vectors):
+        printed = [json.loads(line) for line in Child(try_original, self.vectors).lines()]
+        failing = [v.case.id for v, (right, _, _) in zip(self.vectors, printed) if not right]
+        if failing or len(printed) < len(self.vectors):
             raise ValueError(f"decoder.py itself fails at {failing[:1]}; see run.py")
         self.vectors = [v._replace(cost=cost, calls={tuple(f) for f in functions})
-                        for v, (_, cost, functions) in zip(self.vectors, said)]
+                        for v, (_, cost, functions) in zip(self.vectors, printed)]
 
     def order(self, module: Module, mutant: Mutant) -> list[Vector]:
         """Vectors that reach the mutated function: those that caught others there, those of the module's stems, others."""
@@ -203,10 +203,10 @@ class Results:
             for line in file.read_text("utf-8").splitlines():
                 self.take(json.loads(line))
 
-    def take(self, said: dict) -> None:
-        seen = self.suite.digests.get(said["by"]) if said["by"] else self.vectors
-        if said["sources"] == self.sources and said["vectors"] == seen:
-            self.known[said["id"]] = Outcome(said["by"], said["how"])
+    def take(self, entry: dict) -> None:
+        seen = self.suite.digests.get(entry["by"]) if entry["by"] else self.vectors
+        if entry["sources"] == self.sources and entry["vectors"] == seen:
+            self.known[entry["id"]] = Outcome(entry["by"], entry["how"])
 
     def add(self, mutant: Mutant, outcome: Outcome) -> None:
         self.known[mutant.id] = outcome

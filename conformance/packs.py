@@ -28,13 +28,13 @@ class Part(NamedTuple):
 
 
 class Entry(NamedTuple):
-    said: dict                                              # what the list says of a case, but for the places
+    fields: dict                                            # what the list says of a case, but for the places
     input: bytes                                            # without the bytes that are repeated
     answer: bytes
 
 
-def is_script(said: dict) -> bool:
-    return "session" in said["flags"]
+def is_script(fields: dict) -> bool:
+    return "session" in fields["flags"]
 
 
 def without_repeat(data: bytes, repeat: Optional[dict]) -> bytes:
@@ -50,21 +50,21 @@ def with_repeat(data: bytes, repeat: Optional[dict]) -> bytes:
     return data[:repeat["at"]] + bytes.fromhex(repeat["bytes"]) * repeat["times"] + data[repeat["at"]:]
 
 
-def case_json(said: dict, places: str) -> str:
+def case_json(fields: dict, places: str) -> str:
     """One case of a list, on three or four lines."""
     def members(names: tuple) -> str:
-        return ", ".join(f'"{name}": {json.dumps(said[name], ensure_ascii=False)}' for name in names if name in said)
+        return ", ".join(f'"{name}": {json.dumps(fields[name], ensure_ascii=False)}' for name in names if name in fields)
 
     first = members(("name", "result", *MEMBERS))
     second = members(("profile", "flags", "args", "repeat"))
-    return f'    {{{first},\n     {second},\n     {places}"sha256": "{said["sha256"]}",\n     {members(("what",))}}}'
+    return f'    {{{first},\n     {second},\n     {places}"sha256": "{fields["sha256"]}",\n     {members(("what",))}}}'
 
 
 def list_json(stem: str, what: str, entries: list[Entry], form: int) -> str:
     cases, offset, answer = [], 0, 0
     for entry in entries:
         places = f'"input": [{offset}, {len(entry.input)}], "answer": [{answer}, {len(entry.answer)}], ' if form == FORMAT else ""
-        cases.append(case_json(entry.said, places))
+        cases.append(case_json(entry.fields, places))
         offset += len(entry.input)
         answer += len(entry.answer)
     head = f'{{\n  "format": {form},\n  "stem": "{stem}",\n  "what": {json.dumps(what)},\n  "cases": [\n'
@@ -89,12 +89,12 @@ def unpack(root: Path, folder: Path) -> int:
         own = folder / "vectors" / stem
         own.mkdir(parents=True, exist_ok=True)
         entries = []
-        for said in listed["cases"]:
-            data, answer = (Part(base.with_suffix(suffix), *said.pop(place)).read()
+        for fields in listed["cases"]:
+            data, answer = (Part(base.with_suffix(suffix), *fields.pop(place)).read()
                             for suffix, place in ((".pack", "input"), (".answers", "answer")))
-            (own / f"{said['name']}{'.script' if is_script(said) else '.tct'}").write_bytes(data)
-            (own / f"{said['name']}.jsonl").write_bytes(answer)
-            entries.append(Entry(said, data, answer))
+            (own / f"{fields['name']}{'.script' if is_script(fields) else '.tct'}").write_bytes(data)
+            (own / f"{fields['name']}.jsonl").write_bytes(answer)
+            entries.append(Entry(fields, data, answer))
         text = list_json(stem, listed["what"], entries, UNPACKED)
         own.with_suffix(".json").write_text(text, "utf-8")
         stems.append((stem, len(entries), text))

@@ -188,13 +188,13 @@ def check_reply(case: Case, status: int, lines: list[str]) -> None:
         raise Mismatch(f"{len(lines)} lines; must be {len(expected)}")
 
 
-def make_case(root: Path, stem: str, said: dict) -> Case:
-    if said["result"] not in ("valid", "invalid"):
+def make_case(root: Path, stem: str, fields: dict) -> Case:
+    if fields["result"] not in ("valid", "invalid"):
         raise ValueError("result is neither valid nor invalid")
     base = root / "vectors" / stem
-    error = {"errc": said["errc"], "rule": said["rule"]} if said["result"] == "invalid" else None
-    case = Case(f"{stem}/{said['name']}", Part(base.with_suffix(".pack"), *said["input"]), Part(base.with_suffix(".answers"), *said["answer"]),
-                said["sha256"], said.get("repeat"), said.get("args", []), error, {*said["profile"], *said["flags"]})
+    error = {"errc": fields["errc"], "rule": fields["rule"]} if fields["result"] == "invalid" else None
+    case = Case(f"{stem}/{fields['name']}", Part(base.with_suffix(".pack"), *fields["input"]), Part(base.with_suffix(".answers"), *fields["answer"]),
+                fields["sha256"], fields.get("repeat"), fields.get("args", []), error, {*fields["profile"], *fields["flags"]})
     for part in (case.input, case.answer):
         if part.offset < 0 or part.size < 0 or part.file.stat().st_size < part.offset + part.size:
             raise ValueError(f"{part.file.name} has no bytes {part.offset} to {part.offset + part.size}")
@@ -223,11 +223,11 @@ def load_stem(root: Path, stem: str, manifest: dict) -> tuple[list[Case], list[R
     if len(listed) != manifest["cases"]:
         raise ValueError(f"{len(listed)} cases; the manifest says {manifest['cases']}")
     cases, faults = [], []
-    for said in listed:
+    for fields in listed:
         try:
-            cases.append(make_case(root, stem, said))
+            cases.append(make_case(root, stem, fields))
         except (OSError, ValueError, KeyError, TypeError) as error:
-            faults.append(Result(f"{stem}/{said.get('name')}", "fail", f"cannot be read: {error!r}"))
+            faults.append(Result(f"{stem}/{fields.get('name')}", "fail", f"cannot be read: {error!r}"))
     return cases, faults or gaps(cases, stem)
 
 

@@ -74,11 +74,11 @@ class Block:
 BLOCK = Block()
 
 
-def body_bytes(**said) -> bytes:
-    """The elements of a body; what is said takes the place of what is right."""
+def body_bytes(**changed) -> bytes:
+    """The elements of a body; what is changed takes the place of what is right."""
     constants = {"mass_damping": 1.0, "stiffness_damping": 0.002, "gravity": (0.0, 0.0, 0.0), "coupling": 200.0, "friction": 0.5,
                  "materials": [(20000.0, 0.3, 1000.0)], "tetrahedra": BLOCK.tetrahedra, "lengths": b"", "runs": [(0, BLOCK.fixed - 1)],
-                 "inner": BLOCK.where[-1:], **said}
+                 "inner": BLOCK.where[-1:], **changed}
     out = struct.pack("<7d", *(constants[c] for c in ("mass_damping", "stiffness_damping")), *constants["gravity"],
                       constants["coupling"], constants["friction"])
     out += bytes([len(constants["materials"])]) + b"".join(struct.pack("<3d", *m) for m in constants["materials"])
@@ -96,8 +96,8 @@ def declaration(bodies: bytes, frame_period: int = 256 * TICKS, layered: int = 0
     return data + struct.pack("<I", zlib.crc32(data))
 
 
-def scene_with(**said) -> Declaration:
-    return read_declaration(declaration(b"\x01" + body_bytes(**said)))[0]
+def scene_with(**changed) -> Declaration:
+    return read_declaration(declaration(b"\x01" + body_bytes(**changed)))[0]
 
 
 class RulesTest(unittest.TestCase):
@@ -116,10 +116,10 @@ class RulesTest(unittest.TestCase):
         self.assert_refused("R-STR-5", declaration(b"\x01" + body_bytes()[:-1]), "truncated")
 
     def test_constants(self) -> None:
-        for said in ({"mass_damping": -1.0}, {"stiffness_damping": math.nan}, {"gravity": (0, 0, 2e15)}, {"coupling": 0.0},
+        for changed in ({"mass_damping": -1.0}, {"stiffness_damping": math.nan}, {"gravity": (0, 0, 2e15)}, {"coupling": 0.0},
                      {"friction": math.inf}, {"materials": []}, {"materials": [(1.0, 0.49991, 1.0)]}, {"materials": [(1.0, -1.0, 1.0)]},
                      {"materials": [(0.0, 0.3, 1.0)]}, {"materials": [(1.0, 0.3, 2e15)]}):
-            self.assert_refused("R-ELA-2", declaration(b"\x01" + body_bytes(**said)))
+            self.assert_refused("R-ELA-2", declaration(b"\x01" + body_bytes(**changed)))
 
     def test_methods(self) -> None:
         self.assertEqual(read_declaration(declaration(b"\x02" + body_bytes()))[0].deformables[0].body.method, 2)
@@ -133,7 +133,7 @@ class RulesTest(unittest.TestCase):
     def test_shape(self) -> None:
         two = [(20000.0, 0.3, 1000.0)] * 2
         count = len(BLOCK.tetrahedra)
-        for rule, said in (("R-ELA-3", {"tetrahedra": []}), ("R-ELA-3", {"tetrahedra": [(0, 1, 2, 2)]}),
+        for rule, changed in (("R-ELA-3", {"tetrahedra": []}), ("R-ELA-3", {"tetrahedra": [(0, 1, 2, 2)]}),
                            ("R-ELA-3", {"tetrahedra": [(0, 1, 2, 27)]}), ("R-ELA-3", {"runs": [(0, 27)]}),
                            ("R-ELA-3", {"runs": [(0, 1), (0, 1)]}), ("R-ELA-4", {"runs": [(0, 26)]}),
                            ("R-ELA-4", {"tetrahedra": [BLOCK.tetrahedra[0][1::-1] + BLOCK.tetrahedra[0][2:], *BLOCK.tetrahedra[1:]]}),
@@ -141,7 +141,7 @@ class RulesTest(unittest.TestCase):
                            ("R-ELA-3", {"materials": two, "lengths": varint(0) + b"\0"}),
                            ("R-ELA-3", {"materials": two, "lengths": varint(count + 1) + b"\0"}),
                            ("R-ELA-3", {"materials": two, "lengths": varint(count) + b"\2"})):
-            self.assert_refused(rule, declaration(b"\x01" + body_bytes(**said)))
+            self.assert_refused(rule, declaration(b"\x01" + body_bytes(**changed)))
 
     def test_work(self) -> None:
         data = declaration(b"\x01" + body_bytes())
@@ -229,8 +229,8 @@ class StepTest(unittest.TestCase):
 class ShapesTest(unittest.TestCase):
     """The device is where `at` has it, in metres."""
 
-    def shapes(self, **said) -> Shapes:
-        self.scene = scene_with(**said)
+    def shapes(self, **changed) -> Shapes:
+        self.scene = scene_with(**changed)
         path = DevicePath(device_scene(self.scene))
         self.numbers = itertools.count(1)
         return Shapes(self.scene, self.scene.deformables[0], path)

@@ -56,9 +56,9 @@ class RunnerTest(unittest.TestCase):
         """Adds a case to the pack and the answers, and returns what the stem's list says of it."""
         if errc:
             reply += json.dumps({"error": {"errc": errc, "rule": rule}}, separators=(",", ":")) + "\n"
-        said = {"name": name, "result": "valid", "profile": [], "flags": [], "sha256": hashlib.sha256(data).hexdigest(),
+        fields = {"name": name, "result": "valid", "profile": [], "flags": [], "sha256": hashlib.sha256(data).hexdigest(),
                 "input": self.append(".pack", data), "answer": self.append(".answers", reply.encode("ascii"))}
-        return {**said, "result": "invalid", "errc": errc, "rule": rule} if errc else said
+        return {**fields, "result": "invalid", "errc": errc, "rule": rule} if errc else fields
 
     def append(self, suffix: str, data: bytes) -> list[int]:
         with open(self.vectors / f"scene{suffix}", "ab") as file:

@@ -105,17 +105,17 @@ class FaultTest(unittest.TestCase):
         self.refused("there is no block", ("pocket", FIRST))
 
     def test_a_case_that_expects_otherwise(self) -> None:
-        said = {"result": "valid", "profile": [], "flags": []}
+        fields = {"result": "valid", "profile": [], "flags": []}
         blocks = [Block("scene", SCENE), Block("packet", FIRST)]
-        entry = write_vectors.entry_of(Case("001-one", "One.", said, blocks), Earlier({}, {}), 0)
+        entry = write_vectors.entry_of(Case("001-one", "One.", fields, blocks), Earlier({}, {}), 0)
         self.assertEqual(len(entry.answer.splitlines()), 3)
-        for wrong in ({**said, "result": "invalid", "errc": "invalid", "rule": "R-RIG-1"}, {**said, "flags": ["fast"]}):
+        for wrong in ({**fields, "result": "invalid", "errc": "invalid", "rule": "R-RIG-1"}, {**fields, "flags": ["fast"]}):
             with self.assertRaises(CaseError):
                 write_vectors.entry_of(Case("001-one", "One.", wrong, blocks), Earlier({}, {}), 0)
         with self.assertRaises(CaseError):
-            write_vectors.entry_of(Case("001-one", "One.", said, [*blocks, Block("expect", '{"end":{}}')]), Earlier({}, {}), 0)
+            write_vectors.entry_of(Case("001-one", "One.", fields, [*blocks, Block("expect", '{"end":{}}')]), Earlier({}, {}), 0)
         with self.assertRaises(CaseError):
-            write_vectors.entry_of(Case("002-one", "One.", said, blocks), Earlier({}, {}), 0)
+            write_vectors.entry_of(Case("002-one", "One.", fields, blocks), Earlier({}, {}), 0)
 
 
 if __name__ == "__main__":

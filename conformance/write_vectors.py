@@ -75,10 +75,10 @@ def input_of(case: Case, earlier: Earlier) -> bytes:
 def answer_of(case: Case, data: bytes) -> str:
     """What the second decoder says."""
     install(RangeDecoder)
-    args = case.said.get("args", [])
+    args = case.fields.get("args", [])
     lines: list[dict] = []
     try:
-        if is_script(case.said):
+        if is_script(case.fields):
             lines.extend(session.lines(data.decode("ascii")))
         else:
             for line in decoder.lines(data, args[1] if args else None):
@@ -92,16 +92,16 @@ def check_answer(case: Case, answer: str) -> None:
     """The decoder says what the case expects: the error, or the last line."""
     last = answer.splitlines()[-1] if answer else ""
     expected = [block.text.strip() for block in case.blocks if block.kind == "expect"]
-    error = json.loads(last).get("error") if last and not is_script(case.said) else None
-    wanted = {"errc": case.said["errc"], "rule": case.said["rule"]} if case.said["result"] == "invalid" else None
+    error = json.loads(last).get("error") if last and not is_script(case.fields) else None
+    wanted = {"errc": case.fields["errc"], "rule": case.fields["rule"]} if case.fields["result"] == "invalid" else None
     if error != wanted:
         raise CaseError(f"the decoder answers {last}; the case expects {wanted or 'no error'}")
     if expected and expected[0] != last:
         raise CaseError(f"the decoder answers {last}; the case expects {expected[0]}")
 
 
-def check_said(case: Case, before: int) -> None:
-    unknown = set(case.said["flags"]) - set(FLAGS)
+def check_fields(case: Case, before: int) -> None:
+    unknown = set(case.fields["flags"]) - set(FLAGS)
     if unknown:
         raise CaseError(f"there is no flag {' '.join(sorted(unknown))}")
     if not re.fullmatch(rf"{before + 1:03d}-[a-z0-9-]+", case.name):
@@ -110,17 +110,17 @@ def check_said(case: Case, before: int) -> None:
 
 def entry_of(case: Case, earlier: Earlier, number: int) -> Entry:
     try:
-        check_said(case, number)
+        check_fields(case, number)
         data = input_of(case, earlier)
         answer = answer_of(case, data)
         check_answer(case, answer)
     except (CaseError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise CaseError(f"line {case.line}, {case.name}: {error or type(error).__name__}") from None
-    stored = without_repeat(data, case.said.get("repeat"))
+    stored = without_repeat(data, case.fields.get("repeat"))
     if len(stored) > LARGEST:
         raise CaseError(f"line {case.line}, {case.name}: {len(stored)} bytes, at most {LARGEST}")
-    said = {"name": case.name, **case.said, "sha256": hashlib.sha256(data).hexdigest(), "what": case.what}
-    return Entry(said, stored, answer.encode("ascii"))
+    fields = {"name": case.name, **case.fields, "sha256": hashlib.sha256(data).hexdigest(), "what": case.what}
+    return Entry(fields, stored, answer.encode("ascii"))
 
 
 def make_stem(name: str) -> Stem:
@@ -154,9 +154,9 @@ def index_by_rule(lists: dict[str, list[dict]]) -> str:
     """A line for each rule: the cases that break it or keep it at a limit, by stem."""
     of: dict[str, dict[str, list[str]]] = {}
     for stem, cases in lists.items():
-        for said in cases:
-            for rule in said.get("rules", []):
-                of.setdefault(rule, {}).setdefault(stem, []).append(said["name"])
+        for fields in cases:
+            for rule in fields.get("rules", []):
+                of.setdefault(rule, {}).setdefault(stem, []).append(fields["name"])
 
     def order(rule: str) -> tuple:
         _, group, number = rule.split("-")
@@ -183,7 +183,7 @@ def files_of(stems: list[Stem]) -> dict[Path, bytes]:
     if len(stems) == len(STEMS):
         files[HERE / "manifest.json"] = manifest_json([(s.name, len(s.entries), s.list) for s in stems], FLAGS, FORMAT).encode("utf-8")
         if SPEC.exists():
-            lists = {stem.name: [entry.said for entry in stem.entries] for stem in stems}
+            lists = {stem.name: [entry.fields for entry in stem.entries] for stem in stems}
             files[SPEC] = with_index(SPEC.read_text("utf-8"), lists).encode("utf-8")
     return files
 

@@ -33,18 +33,18 @@ def state_hash(one: decoder.Decoder) -> str:
 
 def answer(data: bytes) -> list:
     """For each packet its tick, the objects that it updates and the state after it; then the rule that the file breaks, if any."""
-    said: list = []
+    found: list = []
     try:
         for one, named in decoder.updates(data):
-            said.append([one.tick, named, state_hash(one)])
+            found.append([one.tick, named, state_hash(one)])
     except decoder.Refused as refused:
-        said.append(str(refused))
-    return said
+        found.append(str(refused))
+    return found
 
 
 def expected(lines: list) -> list:
-    said: list = [[p["tick"], [update[0] for update in p["updates"]], p["state"]] for p in lines if "packet" in p]
-    return said + [line["error"]["rule"] for line in lines if "error" in line]
+    found: list = [[p["tick"], [update[0] for update in p["updates"]], p["state"]] for p in lines if "packet" in p]
+    return found + [line["error"]["rule"] for line in lines if "error" in line]
 
 
 def lines_of(text: str) -> list:
@@ -58,18 +58,18 @@ def check_vectors() -> None:
         if "session" in case.traits:
             continue                                        # no stream
         data = read_input(case)
-        said = answer(data)
-        if said and "are left out" in said[-1]:
-            assert said[1:] == [] and data[6] & 123, case.id  # bits 0, 1 and 3 to 6 of flags
+        found = answer(data)
+        if found and "are left out" in found[-1]:
+            assert found[1:] == [] and data[6] & 123, case.id  # bits 0, 1 and 3 to 6 of flags
         elif not case.error or case.error["rule"] not in LEFT_OUT:
             want = expected(list(map(json.loads, answer_lines(case))))
-            assert said == want, f"{case.id}: {said[-1:]}; must be {want[-1:]}"
+            assert found == want, f"{case.id}: {found[-1:]}; must be {want[-1:]}"
 
 
 def check_file(file: Path) -> None:
     second = subprocess.run([sys.executable, CONFORMANCE / "decoder.py"], stdin=file.open("rb"), capture_output=True, check=True)
-    said = answer(file.read_bytes())
-    assert len(said) > 1 and said == expected(lines_of(second.stdout.decode("ascii")))
+    found = answer(file.read_bytes())
+    assert len(found) > 1 and found == expected(lines_of(second.stdout.decode("ascii")))
 
 
 def check_program() -> None:

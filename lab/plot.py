@@ -109,9 +109,9 @@ def exported(path, begin, options):
                 to.write(begin)
                 shutil.copyfileobj(sys.stdin.buffer, to)
             child.stdin = None
-        text, said = child.communicate()
+        text, errors = child.communicate()
     if child.returncode:
-        sys.stderr.buffer.write(said or b"")
+        sys.stderr.buffer.write(errors or b"")
         sys.exit(child.returncode)
     return text
 

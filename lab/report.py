@@ -61,8 +61,8 @@ def check_cells(options):
     for name in chosen(options.names, sourced()):
         agree, elsewhere, wrong = cells.check(tables, name)
         print(f"{name}: {agree} numbers agree with their cells, {len(wrong)} do not, {elsewhere} are not to be had here")
-        for line, row, said in wrong:
-            print(f"  line {line}: {row['value']}, made again: {said if isinstance(said, str) else format(said, '.6g')}  ({row['source']})")
+        for line, row, again in wrong:
+            print(f"  line {line}: {row['value']}, made again: {again if isinstance(again, str) else format(again, '.6g')}  ({row['source']})")
         if wrong and options.write:
             renew(tables, name, wrong)
         elif wrong:
@@ -71,10 +71,10 @@ def check_cells(options):
 
 
 def renew(tables, name, wrong):
-    for _, row, said in wrong:
-        if isinstance(said, str):
-            raise Refusal(f"{name}: {said}", "Correct the source of this row.")
-        row["value"] = cells.written(said, row["value"])
+    for _, row, again in wrong:
+        if isinstance(again, str):
+            raise Refusal(f"{name}: {again}", "Correct the source of this row.")
+        row["value"] = cells.written(again, row["value"])
     rows = tables.rows(name)
     write_whole(str(REPORTS / name), csv_text([list(rows[0]), *(row.values() for row in rows)]).encode())
 

@@ -39,7 +39,7 @@ constexpr std::array kScripts{
     Script{"bench", "Measure the simulation, sessions and signals"},
 };
 
-constexpr std::size_t kMostSaid = 300;  // of a script's own words, in a message
+constexpr std::size_t kMostShown = 300;  // of a script's own words, in a message
 
 fs::path own_program() {
   std::error_code ignored;
@@ -91,12 +91,12 @@ struct MemoryFile {
 };
 
 /// Run to its end with these as standard input and standard error, in silence else.   out  as of waitpid();   err  errno
-tl::expected<int, int> spawn(std::vector<std::string> words, const MemoryFile& in, const MemoryFile& said) {
+tl::expected<int, int> spawn(std::vector<std::string> words, const MemoryFile& in, const MemoryFile& errors) {
   posix_spawn_file_actions_t streams;
   posix_spawn_file_actions_init(&streams);
   posix_spawn_file_actions_adddup2(&streams, in.file.number(), STDIN_FILENO);
   posix_spawn_file_actions_addopen(&streams, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&streams, said.file.number(), STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&streams, errors.file.number(), STDERR_FILENO);
   pid_t child = 0;
   const int failed = posix_spawnp(&child, words[0].c_str(), &streams, nullptr, pointers_to(words).data(), environ);
   posix_spawn_file_actions_destroy(&streams);
@@ -107,13 +107,13 @@ tl::expected<int, int> spawn(std::vector<std::string> words, const MemoryFile& i
   return status;
 }
 
-/// What a script said on standard error before it ended otherwise than well, its error as JSON.
-tl::unexpected<Failure> refusal_of(const std::string& command, const std::string& said) {
-  const auto document = nlohmann::json::parse(said.substr(std::min(said.find('{'), said.size())), nullptr, false);
+/// What a script wrote on standard error before it ended otherwise than well, its error as JSON.
+tl::unexpected<Failure> refusal_of(const std::string& command, const std::string& errors) {
+  const auto document = nlohmann::json::parse(errors.substr(std::min(errors.find('{'), errors.size())), nullptr, false);
   const nlohmann::json* const error = document.is_object() && document.contains("error") ? &document["error"] : nullptr;
   if (error == nullptr || !error->is_object())
     return refuse(
-        fmt::format("tactus {} failed: {}", command, shown(said.substr(said.size() - std::min(said.size(), kMostSaid)))),
+        fmt::format("tactus {} failed: {}", command, shown(errors.substr(errors.size() - std::min(errors.size(), kMostShown)))),
         "Check the installation of Python, NumPy and matplotlib.");
   return refuse(error->value("text", ""), error->value("remedy", ""));
 }
@@ -131,13 +131,13 @@ Outcome run_script(const std::string& command, const std::vector<std::string>& a
 Outcome feed_script(const std::string& command, std::vector<std::string> arguments, const std::string& input) {
   arguments.insert(arguments.end(), {"--json", "--quiet"});
   TACTUS_TRY(auto words, words_of(command, arguments));
-  const MemoryFile in, said;
-  if (!in.file.is_open() || !said.file.is_open()) return refuse_start(command, errno);
+  const MemoryFile in, errors;
+  if (!in.file.is_open() || !errors.file.is_open()) return refuse_start(command, errno);
   if (!(std::ofstream(in.path, std::ios::binary) << input).flush()) return refuse_start(command, ENOSPC);
-  const auto status = spawn(std::move(words), in, said);
+  const auto status = spawn(std::move(words), in, errors);
   if (!status) return refuse_start(command, status.error());
   if (WIFEXITED(*status) && WEXITSTATUS(*status) == 0) return {};
-  TACTUS_TRY(const std::string text, read_file(said.path));
+  TACTUS_TRY(const std::string text, read_file(errors.path));
   return refusal_of(command, text);
 }
 

@@ -38,7 +38,7 @@ std::string text_of(const ReadLoss& loss) {
   return text;
 }
 
-/// The losses, the first ones in words. Neighbours at one place are said once.
+/// The losses, the first ones in words. Neighbours at one place are named once.
 void add_losses(const std::vector<ReadLoss>& losses, Report& report) {
   constexpr std::size_t kMost = 20;
   std::uint64_t bytes = 0;
@@ -69,7 +69,7 @@ class Held {
   std::vector<std::string> finish(std::int64_t last_tick) {
     for (std::size_t i = 0; i < since_.size(); ++i)
       if (since_[i]) end(i, last_tick + 1);
-    return std::move(said_);
+    return std::move(lines_);
   }
 
  private:
@@ -79,7 +79,7 @@ class Held {
   }
   void end(std::size_t i, std::int64_t tick) {
     if (tick > *since_[i])
-      said_.push_back(
+      lines_.push_back(
           fmt::format("object {}: nothing new from tick {} to {}, behind what was lost; it stands where it was before",
                       shown(info_.objects[i].name), *since_[i], tick - 1));
     since_[i].reset();
@@ -88,7 +88,7 @@ class Held {
   std::vector<std::optional<std::int64_t>> since_;
   std::vector<RigidSample> last_;
   bool may_follow_ = false;
-  std::vector<std::string> said_;
+  std::vector<std::string> lines_;
 };
 
 /// What can be read, and why the rest cannot.

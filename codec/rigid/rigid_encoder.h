@@ -63,7 +63,7 @@ class RigidEncoder {
   struct Sent {
     SmoothedPath path;
     std::uint64_t version = 0;    // of the path, where work is shared
-    std::uint64_t number = 0;     // of the packet that said so
+    std::uint64_t number = 0;     // of the packet that brought it
     std::uint8_t follow_ups = 0;  // since a trigger asked for it
     bool acknowledged = true;
   };

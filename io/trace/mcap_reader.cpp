@@ -357,23 +357,23 @@ std::string rest_of(ByteReader content) {
 /// recording it has the number of its equal before, its own, or a free one.
 /// in  content  all that it says but its number
 template <class Declared, class Equals>
-Result<void> Reader::declare(Declared said, std::string content, std::map<std::uint16_t, Declared>& known, Numbers& numbers,
+Result<void> Reader::declare(Declared declared, std::string content, std::map<std::uint16_t, Declared>& known, Numbers& numbers,
                              const Equals& equals) {
-  if (const auto old = numbers.of_file.find(said.id); old != numbers.of_file.end())
-    return equals(known.at(old->second), said) ? Result<void>() : refuse(Errc::invalid, "R-TRC-10");
+  if (const auto old = numbers.of_file.find(declared.id); old != numbers.of_file.end())
+    return equals(known.at(old->second), declared) ? Result<void>() : refuse(Errc::invalid, "R-TRC-10");
   const std::size_t size = content.size();
-  const auto [same, is_new] = numbers.by_content.try_emplace(std::move(content), said.id);
-  if (is_new && known.contains(said.id)) {
+  const auto [same, is_new] = numbers.by_content.try_emplace(std::move(content), declared.id);
+  if (is_new && known.contains(declared.id)) {
     while (numbers.free <= 0xFFFF && known.contains(static_cast<std::uint16_t>(numbers.free))) ++numbers.free;
     if (numbers.free > 0xFFFF) return refuse(Errc::limit_exceeded, "R-TRC-5");
     same->second = static_cast<std::uint16_t>(numbers.free);
   }
-  numbers.of_file.emplace(said.id, same->second);
+  numbers.of_file.emplace(declared.id, same->second);
   if (!is_new) return {};
   declared_bytes_ += size;
   if (declared_bytes_ > limits_.declaration_bytes) return refuse(Errc::limit_exceeded, "R-TRC-5");
-  said.id = same->second;
-  known.emplace(said.id, std::move(said));
+  declared.id = same->second;
+  known.emplace(declared.id, std::move(declared));
   return {};
 }
 
@@ -381,7 +381,7 @@ Result<void> Reader::add_schema(ByteReader content) {
   if (section_ == Section::summary) return {};
   Schema schema;
   schema.id = content.u16();
-  std::string said = rest_of(content);
+  std::string rest = rest_of(content);
   schema.name = get_text(content);
   schema.encoding = get_text(content);
   schema.data = get_text(content);
@@ -391,7 +391,7 @@ Result<void> Reader::add_schema(ByteReader content) {
   const auto equals = [](const Schema& a, const Schema& b) {
     return a.name == b.name && a.encoding == b.encoding && a.data == b.data;
   };
-  return declare(std::move(schema), std::move(said), schemas_, schema_numbers_, equals);
+  return declare(std::move(schema), std::move(rest), schemas_, schema_numbers_, equals);
 }
 
 Result<void> Reader::add_channel(ByteReader content) {
@@ -399,7 +399,7 @@ Result<void> Reader::add_channel(ByteReader content) {
   Channel channel;
   channel.id = content.u16();
   channel.schema_id = content.u16();
-  std::string said = rest_of(content);
+  std::string rest = rest_of(content);
   channel.topic = get_text(content);
   channel.message_encoding = get_text(content);
   auto metadata = get_map(content);
@@ -411,12 +411,12 @@ Result<void> Reader::add_channel(ByteReader content) {
     if (schema == schema_numbers_.of_file.end()) return refuse(Errc::invalid, "R-TRC-10");
     channel.schema_id = schema->second;
   }
-  said.insert(0, std::to_string(channel.schema_id) + ":");
+  rest.insert(0, std::to_string(channel.schema_id) + ":");
   const auto equals = [](const Channel& a, const Channel& b) {
     return a.schema_id == b.schema_id && a.topic == b.topic && a.message_encoding == b.message_encoding &&
            a.metadata == b.metadata;
   };
-  return declare(std::move(channel), std::move(said), channels_, channel_numbers_, equals);
+  return declare(std::move(channel), std::move(rest), channels_, channel_numbers_, equals);
 }
 
 Result<Item> Reader::take_message(ByteReader content) {

@@ -115,7 +115,7 @@ class Reader {
     std::uint32_t free = 1;  // none below is
   };
   template <class Declared, class Equals>
-  Result<void> declare(Declared said, std::string content, std::map<std::uint16_t, Declared>& known, Numbers& numbers,
+  Result<void> declare(Declared declared, std::string content, std::map<std::uint16_t, Declared>& known, Numbers& numbers,
                        const Equals& equals);
   Result<Item> take_message(ByteReader content);
   Result<Item> take_attachment(ByteReader content);

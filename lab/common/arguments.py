@@ -20,9 +20,9 @@ WHOLE_LINE = argparse.RawDescriptionHelpFormatter
 class Refusal(Exception):
     """Why a command fails: what is wrong, and a remedy. `findings`: all of several, each a pair (text, remedy)."""
 
-    def __init__(self, text, remedy="", status=FAILED, findings=(), **said):
+    def __init__(self, text, remedy="", status=FAILED, findings=(), **fields):
         super().__init__(text)
-        self.text, self.remedy, self.status, self.said = text, remedy, status, said
+        self.text, self.remedy, self.status, self.fields = text, remedy, status, fields
         self.findings = list(findings) or [(text, remedy)]
 
 
@@ -79,7 +79,7 @@ def printable(text):
 
 def complain(refusal, as_json):
     if as_json:
-        error = {"text": refusal.text} | ({"remedy": refusal.remedy} if refusal.remedy else {}) | refusal.said
+        error = {"text": refusal.text} | ({"remedy": refusal.remedy} if refusal.remedy else {}) | refusal.fields
         if len(refusal.findings) > 1:
             error["findings"] = [{"text": text, "remedy": remedy} for text, remedy in refusal.findings]
         print(json.dumps({"schema": "tactus.error/1", "error": error}, indent=2, ensure_ascii=False), file=sys.stderr)

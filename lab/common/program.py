@@ -47,29 +47,29 @@ def as_typed(words, name="tactus"):
     return " ".join([name, *map(shlex.quote, words)])
 
 
-def in_words(said):
-    """What a command said on standard error, its error not as JSON."""
-    said = said.rstrip("\n")
-    start = 0 if said.startswith("{") else said.find("\n{\n") + 1
-    if start == 0 and not said.startswith("{"):
-        return said
+def in_words(errors):
+    """What a command wrote on standard error, its error not as JSON."""
+    errors = errors.rstrip("\n")
+    start = 0 if errors.startswith("{") else errors.find("\n{\n") + 1
+    if start == 0 and not errors.startswith("{"):
+        return errors
     try:
-        error = json.loads(said[start:])["error"]
+        error = json.loads(errors[start:])["error"]
     except (ValueError, KeyError, TypeError):
-        return said
-    return said[:start] + "error: " + error.get("text", "") + ("\n       " + error["remedy"] if error.get("remedy") else "")
+        return errors
+    return errors[:start] + "error: " + error.get("text", "") + ("\n       " + error["remedy"] if error.get("remedy") else "")
 
 
 def run(words, path=None, stdin=None):
-    """Standard output of a run as bytes. A broken bound (status 3) is a result.   raises Refusal with the command and what it said"""
+    """Standard output of a run as bytes. A broken bound (status 3) is a result.   raises Refusal with the command and what it wrote"""
     path = path or tactus()
     try:
         done = subprocess.run([path, *words], capture_output=True, stdin=stdin or subprocess.DEVNULL, check=False)
     except OSError as refused:
         raise Refusal(f"{path}: the program cannot be started: {refused.strerror}", "Check the installation.") from None
     if done.returncode not in (OK, BROKEN):
-        said = in_words(done.stderr.decode(errors="replace")) or f"it ended with status {done.returncode}"
-        raise Refusal(f"{as_typed(words, os.path.basename(path))}\n{said}")
+        errors = in_words(done.stderr.decode(errors="replace")) or f"it ended with status {done.returncode}"
+        raise Refusal(f"{as_typed(words, os.path.basename(path))}\n{errors}")
     return done.stdout
 
 

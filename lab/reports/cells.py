@@ -173,8 +173,8 @@ def check(tables, name):
             if agrees(number, row["value"]):
                 agree += 1
                 continue
-            said = number
+            again = number
         except (Refusal, NotAFormula, OSError, KeyError, ValueError) as refused:
-            said = getattr(refused, "text", str(refused) or repr(refused))
-        wrong.append((line, row, said))
+            again = getattr(refused, "text", str(refused) or repr(refused))
+        wrong.append((line, row, again))
     return agree, elsewhere, wrong

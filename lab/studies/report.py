@@ -34,7 +34,7 @@ class Folder:
         try:
             made = make()
         except Refusal as refusal:
-            if "missing" not in refusal.said:
+            if "missing" not in refusal.fields:
                 raise
             note_missing(refusal)
             return False

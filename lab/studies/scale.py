@@ -92,9 +92,9 @@ def csv_row(row):
 
 
 def remarks(row):
-    said = [f"{100 * row['loss']:.0f} % loss"] if row["loss"] else []
-    said += ["participants"] if row.get("participants") else []
-    return ", ".join(said + (["what moved is named"] if row.get("names_moved") else []))
+    parts = [f"{100 * row['loss']:.0f} % loss"] if row["loss"] else []
+    parts += ["participants"] if row.get("participants") else []
+    return ", ".join(parts + (["what moved is named"] if row.get("names_moved") else []))
 
 
 def cells(row):

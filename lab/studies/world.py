@@ -115,8 +115,8 @@ def scaled(costs, more):
 
 
 def remarks(row):
-    said = [f"{row['more'][group]:g} x cost of {NAMES.get(group, group)}" for group in FACTORS if group in row["more"]]
-    return ", ".join(said + [f"{key} {value:g}" for key, value in row["more"].items() if key == "stirred"])
+    parts = [f"{row['more'][group]:g} x cost of {NAMES.get(group, group)}" for group in FACTORS if group in row["more"]]
+    return ", ".join(parts + [f"{key} {value:g}" for key, value in row["more"].items() if key == "stirred"])
 
 
 def columns():

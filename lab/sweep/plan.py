@@ -17,7 +17,7 @@ LONGEST_WORD = 65536  # [bytes] of a command with its values: Linux passes twice
 LONGEST_PATH = 4096
 DEEP = re.compile(r"(?:[\w-]+ *\. *){64}")  # a dotted key of so many parts
 MOST_BYTES = 1 << 20
-MOST_SAID, LONGEST_SAID = 20, 200  # findings; characters of a part of one
+MOST_FINDINGS, LONGEST_FINDING = 20, 200  # findings; characters of a part of one
 SIMPLE = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9_.-]*\Z")
 POINTER = re.compile(r"(?:/(?:[^~/]|~[01])*)+\Z")
 OWN_FILES = {"points.csv", "times.csv", "table.csv", "context.json", "points"}
@@ -133,7 +133,7 @@ class _Reader:
     def invalid(self, key, what, remedy):
         line = self.line_of(key)
         at = f":{line}" if line else ""
-        finding = (f"{self.path}{at}: {key[:LONGEST_SAID]}: {what[:LONGEST_SAID]}", (remedy[0].upper() + remedy[1:])[:LONGEST_SAID] + ".")
+        finding = (f"{self.path}{at}: {key[:LONGEST_FINDING]}: {what[:LONGEST_FINDING]}", (remedy[0].upper() + remedy[1:])[:LONGEST_FINDING] + ".")
         if finding not in self.findings:
             self.findings.append(finding)
             self.first_line = self.first_line or line
@@ -141,11 +141,11 @@ class _Reader:
     def refuse(self):
         if not self.findings:
             return
-        said, more = self.findings[:MOST_SAID], len(self.findings) - MOST_SAID
+        shown, more = self.findings[:MOST_FINDINGS], len(self.findings) - MOST_FINDINGS
         if more > 0:
-            said.append((f"{self.path}: {more} more", "Correct these first."))
+            shown.append((f"{self.path}: {more} more", "Correct these first."))
         place = {"place": f"line {self.first_line}"} if self.first_line else {}
-        raise Refusal(*said[0], findings=said, file=str(self.path), **place)
+        raise Refusal(*shown[0], findings=shown, file=str(self.path), **place)
 
     def line_of(self, key):
         """The first line that begins with the last name of a key, behind the header of its table."""

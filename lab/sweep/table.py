@@ -94,7 +94,7 @@ def write(plan, folder, rows, digests):
             files += drawn
             notes += note
     except Refusal as refused:
-        if refused.said.get("missing") != "matplotlib":
+        if refused.fields.get("missing") != "matplotlib":
             raise
         notes.append(f"{refused.text}: there are no figures ({refused.remedy.removesuffix('.')})")
     return files, notes
