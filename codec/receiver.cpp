@@ -93,13 +93,13 @@ Result<DecodedPacket> Receiver::push_numbered(std::uint64_t number, std::span<co
 
 void Receiver::skip_number(std::uint64_t number) noexcept { impl_->replica.skip_number(number); }
 
-void Receiver::know(std::shared_ptr<const DevicePath> path) {
+void Receiver::set_device_path(std::shared_ptr<const DevicePath> path) {
   impl_->path = std::move(path);
-  impl_->replica.know(*impl_->path);
+  impl_->replica.set_device_path(*impl_->path);
   const Scene& scene = *impl_->scene;
   for (std::size_t i = 0; i < scene.deformables.size(); ++i)
     if (const DeformableObject& object = scene.deformables[i]; object.body)
-      impl_->deformables[i]->know(std::make_unique<DrivenShape>(scene, object, *impl_->path));
+      impl_->deformables[i]->set_followed_shape(std::make_unique<DrivenShape>(scene, object, *impl_->path));
 }
 
 Replica& Receiver::replica() noexcept { return impl_->replica; }

@@ -190,13 +190,13 @@ void Sender::request_key() noexcept {
 
 void Sender::request_rigid_key() noexcept { impl_->rigid.request_key(); }
 
-void Sender::know(std::shared_ptr<const DevicePath> path) {
+void Sender::set_device_path(std::shared_ptr<const DevicePath> path) {
   impl_->path = std::move(path);
-  impl_->rigid.codec().know(*impl_->path);
+  impl_->rigid.codec().set_device_path(*impl_->path);
   const Scene& scene = *impl_->scene;
   for (std::size_t i = 0; i < scene.deformables.size(); ++i)
     if (const DeformableObject& object = scene.deformables[i]; object.body)
-      impl_->deformables[i]->know(std::make_unique<DrivenShape>(scene, object, *impl_->path));
+      impl_->deformables[i]->set_followed_shape(std::make_unique<DrivenShape>(scene, object, *impl_->path));
 }
 
 void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept {
@@ -218,7 +218,7 @@ void Sender::set_widening(double factor) noexcept {
   if (impl_->loads) impl_->loads->codec().set_widening(within);
 }
 
-void Sender::look_from(std::span<const Vec3> places) noexcept { impl_->rigid.codec().look_from(places); }
+void Sender::look_from(std::span<const Vec3> viewpoints) noexcept { impl_->rigid.codec().look_from(viewpoints); }
 
 void Sender::forget_last(std::size_t substream) noexcept {
   if (substream == 0) impl_->rigid.forget_last();

@@ -135,22 +135,22 @@ class Sender {
   void set_widening(double factor) noexcept;
 
   /// In a scene with interest: where its client looks from, from the next tick on, so that what is far is told with wider bounds or not at all
-  /// (SceneBuilder::interest()). Before the first call all rigid objects are told in full; where no place is known, none.
-  /// in   places  [m] at most two: its device, and its eyes or whatever stands for them. Others are ignored.   time 10 ns
-  void look_from(std::span<const Vec3> places) noexcept;
+  /// (SceneBuilder::interest()). Before the first call all rigid objects are told in full; where no viewpoint is known, none.
+  /// in   viewpoints  [m] at most two: its device, and its eyes or whatever stands for them. Others are ignored.   time 10 ns
+  void look_from(std::span<const Vec3> viewpoints) noexcept;
 
   /// Report that the newest packet of this substream will not be decoded (it is dropped, or known to be lost). The next one
   /// builds on the state before it, or on the initial state if the scene's baseline_span does not reach that far. At most once
   /// per packet.
   void forget_last(std::size_t substream) noexcept;
 
-  /// Know the device of the one receiver, which may drive objects then (SceneBuilder::driven()): those that it pushes or holds are sent when
+  /// The path of the device of the one receiver, which may drive objects then (SceneBuilder::driven()): those that it pushes or holds are sent when
   /// they leave the way that the receiver works out from its own device. Without it the scene's driven objects are coded as any other.
   /// in   path  where the device is at each tick that is encoded, with all packets up to then.   allocates
-  void know(std::shared_ptr<const DevicePath> path);
+  void set_device_path(std::shared_ptr<const DevicePath> path);
 
   const SharedScene& scene() const noexcept;
-  /// State of a rigid object as a receiver of all packets has it, by its place in the scene.
+  /// State of a rigid object as a receiver of all packets has it, by its index in the scene.
   const RigidState& object(std::uint32_t object) const noexcept;
   /// Hash of a substream's state; equals the receiver's after the same packets.   pre  the substream exists
   std::uint64_t state_hash(std::size_t substream) const noexcept;

@@ -3,7 +3,7 @@
 """A client written from the specification alone: joins `tactus serve` over UDP and moves a device about.
 
   client.py PORT [--seconds S] [--observe] [--token FILE] [--seat N]
-      prints one line of JSON at the end: packets, epochs, round trip, hash of each substream's state; in a driven scene also the paces of the
+      prints one line of JSON at the end: packets, epochs, round trip, hash of each substream's state; in a driven scene also the tick mappings of the
       device, and how many of its packets did not act
 
 It ends when the server leaves, or after S seconds. Without an answer it joins again by itself, by its token, that --token also keeps for
@@ -38,7 +38,7 @@ class Device:
 
     def packet(self, now: float) -> bytes:
         angle = self.SPEED * (now - self.start)
-        place = (self.RADIUS * math.cos(angle), self.RADIUS * math.sin(angle), 0.0)
+        position = (self.RADIUS * math.cos(angle), self.RADIUS * math.sin(angle), 0.0)
         models, encoder = Models("rigid-start-models.csv"), RangeEncoder()
         encoder.bit(models["KEY"][1], 1)
         encoder.magnitude(models["TICK"], int((now - self.start) * self.tick_rate))
@@ -108,7 +108,7 @@ def main() -> int:
     said = {"client": epoch.client, "packets": epoch.packets, "epochs": epochs, "round_trip_us": epoch.round_trip and epoch.round_trip[0],
             "state_hashes": [f"{d.state_hash():016x}" for d in epoch.decoders.substreams.values()]}
     if epoch.path:
-        said.update({"paces": len(epoch.path.offsets), "without_effect": sum(not epoch.path.acts(n) for n in epoch.path.states)})
+        said.update({"tick_mappings": len(epoch.path.offsets), "without_effect": sum(not epoch.path.acts(n) for n in epoch.path.states)})
     print(json.dumps(said))
     return 0
 

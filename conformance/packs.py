@@ -28,7 +28,7 @@ class Part(NamedTuple):
 
 
 class Entry(NamedTuple):
-    said: dict                                              # what the list says of a case, but for the places
+    said: dict                                              # what the list says of a case, but for the extents
     input: bytes                                            # without the bytes that are repeated
     answer: bytes
 
@@ -50,21 +50,21 @@ def with_repeat(data: bytes, repeat: Optional[dict]) -> bytes:
     return data[:repeat["at"]] + bytes.fromhex(repeat["bytes"]) * repeat["times"] + data[repeat["at"]:]
 
 
-def case_json(said: dict, places: str) -> str:
+def case_json(said: dict, extents: str) -> str:
     """One case of a list, on three or four lines."""
     def members(names: tuple) -> str:
         return ", ".join(f'"{name}": {json.dumps(said[name], ensure_ascii=False)}' for name in names if name in said)
 
     first = members(("name", "result", *MEMBERS))
     second = members(("profile", "flags", "args", "repeat"))
-    return f'    {{{first},\n     {second},\n     {places}"sha256": "{said["sha256"]}",\n     {members(("what",))}}}'
+    return f'    {{{first},\n     {second},\n     {extents}"sha256": "{said["sha256"]}",\n     {members(("what",))}}}'
 
 
 def list_json(stem: str, what: str, entries: list[Entry], form: int) -> str:
     cases, offset, answer = [], 0, 0
     for entry in entries:
-        places = f'"input": [{offset}, {len(entry.input)}], "answer": [{answer}, {len(entry.answer)}], ' if form == FORMAT else ""
-        cases.append(case_json(entry.said, places))
+        extents = f'"input": [{offset}, {len(entry.input)}], "answer": [{answer}, {len(entry.answer)}], ' if form == FORMAT else ""
+        cases.append(case_json(entry.said, extents))
         offset += len(entry.input)
         answer += len(entry.answer)
     head = f'{{\n  "format": {form},\n  "stem": "{stem}",\n  "what": {json.dumps(what)},\n  "cases": [\n'
@@ -90,8 +90,8 @@ def unpack(root: Path, folder: Path) -> int:
         own.mkdir(parents=True, exist_ok=True)
         entries = []
         for said in listed["cases"]:
-            data, answer = (Part(base.with_suffix(suffix), *said.pop(place)).read()
-                            for suffix, place in ((".pack", "input"), (".answers", "answer")))
+            data, answer = (Part(base.with_suffix(suffix), *said.pop(part)).read()
+                            for suffix, part in ((".pack", "input"), (".answers", "answer")))
             (own / f"{said['name']}{'.script' if is_script(said) else '.tct'}").write_bytes(data)
             (own / f"{said['name']}.jsonl").write_bytes(answer)
             entries.append(Entry(said, data, answer))

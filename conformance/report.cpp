@@ -192,7 +192,7 @@ class Client {
   void has_device() {
     path_ = std::make_shared<DevicePath>(scene_);
     path_->shift(0, 0);
-    receiver_.know(path_);
+    receiver_.set_device_path(path_);
   }
 
   /// Decodes the packet of a record and writes its line.

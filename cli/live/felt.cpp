@@ -10,7 +10,7 @@ namespace tactus::cli {
 
 TraceInfo FeltNothing::info() const {
   TraceInfo info;
-  info.users.push_back({.name = "hand", .forces = KnownForces::felt});
+  info.users.push_back({.name = "hand", .forces = RecordedForces::felt});
   return info;
 }
 
@@ -36,7 +36,7 @@ FeltRecording::FeltRecording(device::Recording recording, Exerted exerted, doubl
 
 TraceInfo FeltRecording::info() const {
   TraceInfo info;
-  info.users.push_back({.name = recording_.user().name, .forces = KnownForces::felt});
+  info.users.push_back({.name = recording_.user().name, .forces = RecordedForces::felt});
   return info;
 }
 
@@ -45,8 +45,8 @@ tl::expected<Vec3, Failure> FeltRecording::step(const device::ServoTick& tick, T
   if (begin_ < 0 && tick.reading.state == device::Reading::State::valid) {
     begin_ = tick.due;
     origin_ = recording_.begin() - sample.position;
-    place_ = recording_.begin();
-    placed_ = tick.due;
+    position_ = recording_.begin();
+    position_at_ = tick.due;
   }
   sample.position = sample.position + origin_;
   frame.users.front().device = sample;
@@ -64,11 +64,11 @@ tl::expected<Vec3, Failure> FeltRecording::step(const device::ServoTick& tick, T
 
 /// It grows from nothing, also when the recording begins again and the hand is far away.
 Vec3 FeltRecording::spring(const Vec3& way, const Vec3& hand, Time into, Time now) noexcept {
-  if (now > placed_) {
-    const Vec3 speed = (1e9 / static_cast<double>(now - placed_)) * (hand - place_);
+  if (now > position_at_) {
+    const Vec3 speed = (1e9 / static_cast<double>(now - position_at_)) * (hand - position_);
     speed_ = speed_ + kSmoothing * (speed - speed_);
-    place_ = hand;
-    placed_ = now;
+    position_ = hand;
+    position_at_ = now;
   }
   const double share = std::min(static_cast<double>(into) / static_cast<double>(kGrowth), 1.0);
   return share * (stiffness_ * way - kDamping * speed_);

@@ -70,10 +70,10 @@ Json without_shares(Json traffic) {
   return traffic;
 }
 
-Json forces_json(KnownForces known) {
+Json forces_json(RecordedForces known) {
   Json out = Json::array();
-  if (known != KnownForces::server) out.push_back("felt");
-  if (known != KnownForces::felt) out.push_back("server");
+  if (known != RecordedForces::server) out.push_back("felt");
+  if (known != RecordedForces::felt) out.push_back("server");
   return out;
 }
 

@@ -150,13 +150,13 @@ ModeBasis cluster_basis(const DeformableObject& object) {
     out.shares.close();
   }
   std::vector<std::vector<Member>> members(count);
-  std::vector<std::vector<std::uint32_t>> places(count);  // in out.shares.items
-  std::uint32_t place = 0;
+  std::vector<std::vector<std::uint32_t>> indices(count);  // in out.shares.items
+  std::uint32_t index = 0;
   for (std::uint32_t v = 0; v < blender.shares().size(); ++v) {
     for (const Share& share : blender.shares()[v]) {
       if (share.weight == 0) continue;
       members[share.cluster].push_back({v, static_cast<double>(share.weight)});
-      places[share.cluster].push_back(place++);
+      indices[share.cluster].push_back(index++);
     }
   }
   for (std::size_t c = 0; c < count; ++c) {
@@ -164,7 +164,7 @@ ModeBasis cluster_basis(const DeformableObject& object) {
     for (std::size_t i = 0; i < 4; ++i) {
       const double largest = largest_of(functions[i]);
       for (std::size_t m = 0; m < members[c].size(); ++m)
-        out.shares.items[places[c][m]].values[i] =
+        out.shares.items[indices[c][m]].values[i] =
             static_cast<std::int16_t>(std::floor(functions[i][m] / largest * ModeBasis::kMaxEntry + 0.5));
       out.steps.insert(out.steps.end(), 3, step_of(functions[i], largest));
     }

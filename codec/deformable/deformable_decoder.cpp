@@ -62,8 +62,8 @@ class Of final : public DeformableDecoder {
   std::span<const Vec3i> displacements() const noexcept override { return stream_.newest().displacement; }
   std::span<const Vec3i> displacements_at(std::int64_t tick) noexcept override { return predict(stream_.newest(), tick); }
   std::span<const Vec3i> displacements_of(std::int64_t tick) noexcept override { return predict(stream_.at(tick), tick); }
-  void know(std::unique_ptr<FollowedShape> shape) noexcept override {
-    if constexpr (requires { stream_.codec().know(std::move(shape)); }) stream_.codec().know(std::move(shape));
+  void set_followed_shape(std::unique_ptr<FollowedShape> shape) noexcept override {
+    if constexpr (requires { stream_.codec().set_followed_shape(std::move(shape)); }) stream_.codec().set_followed_shape(std::move(shape));
   }
   bool holds(std::uint64_t number) const noexcept override { return stream_.holds(number); }
   std::int64_t tick() const noexcept override { return stream_.newest().tick; }

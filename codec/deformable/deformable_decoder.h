@@ -126,7 +126,7 @@ class MainDecoder {
   void commit(const MainState&, MainState& next) noexcept { std::swap(next_, next); }
   std::uint64_t bit() const noexcept { return 8 * std::min<std::uint64_t>(coder_.position(), payload_); }
 
-  void know(std::unique_ptr<FollowedShape> shape) noexcept { driven_ = std::move(shape); }  ///< pre  the object has a body
+  void set_followed_shape(std::unique_ptr<FollowedShape> shape) noexcept { driven_ = std::move(shape); }  ///< pre  the object has a body
   /// Displacements shown at a tick not before the state's. Valid until the next call.
   std::span<const Vec3i> predict(const MainState& state, std::int64_t tick) noexcept;
 
@@ -164,8 +164,8 @@ class DeformableDecoder {
   virtual std::span<const std::array<std::int32_t, 3>> displacements_at(std::int64_t tick) noexcept = 0;
   /// The same from the newest state held that is not later than the tick, for a client that shows the past. spec/60-client.md 6
   virtual std::span<const std::array<std::int32_t, 3>> displacements_of(std::int64_t tick) noexcept = 0;
-  /// Show what the device of the client does (Receiver::know).   pre  the object has a body
-  virtual void know(std::unique_ptr<FollowedShape> shape) noexcept = 0;
+  /// Show what the device of the client does (Receiver::set_device_path).   pre  the object has a body
+  virtual void set_followed_shape(std::unique_ptr<FollowedShape> shape) noexcept = 0;
   virtual bool holds(std::uint64_t number) const noexcept = 0;  ///< the state after the packet of this number
   virtual std::int64_t tick() const noexcept = 0;               ///< of the newest packet, 0 before the first
   virtual std::uint64_t state_hash() const noexcept = 0;

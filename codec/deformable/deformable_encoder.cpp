@@ -270,10 +270,10 @@ class Of final : public DeformableEncoder {
   }
   bool is_layered() const noexcept override { return layered_; }
   /// Where nothing is lost an acknowledgement is late at most.
-  void set_link(const LinkState& link) noexcept override { stream_.set_answer(link.loss >= kSomeLoss ? link.answer : 0); }
+  void set_link(const LinkState& link) noexcept override { stream_.set_ack_timeout(link.loss >= kSomeLoss ? link.ack_timeout : 0); }
   void set_widening(double factor) noexcept override { stream_.codec().set_widening(factor); }
-  void know(std::unique_ptr<FollowedShape> shape) noexcept override {
-    if constexpr (requires { stream_.codec().know(std::move(shape)); }) stream_.codec().know(std::move(shape));
+  void set_followed_shape(std::unique_ptr<FollowedShape> shape) noexcept override {
+    if constexpr (requires { stream_.codec().set_followed_shape(std::move(shape)); }) stream_.codec().set_followed_shape(std::move(shape));
   }
   void request_key() noexcept override { stream_.request_key(); }
   void forget_last() noexcept override { stream_.forget_last(); }

@@ -47,7 +47,7 @@ class MainEncoder {
     touch_ = touch;
   }
   void set_widening(double factor) noexcept { widening_ = factor; }
-  void know(std::unique_ptr<FollowedShape> shape) noexcept { driven_ = std::move(shape); }  ///< pre  the object has a body
+  void set_followed_shape(std::unique_ptr<FollowedShape> shape) noexcept { driven_ = std::move(shape); }  ///< pre  the object has a body
   /// time O(vertices * (1 + modes)), no allocation
   Result<Payload> encode(const EncodeRequest<MainState>& request, std::span<std::uint8_t> out) noexcept;
   void commit(const MainState&, MainState& next) noexcept { std::swap(next_, next); }
@@ -147,8 +147,8 @@ class DeformableEncoder {
   virtual bool is_layered() const noexcept = 0;
   virtual void set_link(const LinkState& link) noexcept = 0;  ///< nothing without Baseline::acknowledged, or with layers
   virtual void set_widening(double factor) noexcept = 0;      ///< of all thresholds.   pre  factor >= 1
-  /// Show what the device of the client does (Sender::know).   pre  the object has a body
-  virtual void know(std::unique_ptr<FollowedShape> shape) noexcept = 0;
+  /// Show what the device of the client does (Sender::set_device_path).   pre  the object has a body
+  virtual void set_followed_shape(std::unique_ptr<FollowedShape> shape) noexcept = 0;
   virtual void request_key() noexcept = 0;
   virtual void forget_last() noexcept = 0;
   virtual void acknowledge(std::uint16_t sequence) noexcept = 0;

@@ -275,10 +275,10 @@ class PredictorChoice {
   /// pre  both outlive this, and the scene has motion constants
   PredictorChoice(const Scene& scene, const PastStates& past) : scene_(scene), past_(&past), predictor_(scene) {}
 
-  /// The receiver's device, and a past with what is told of it.   RigidPredictor::know
-  void know(const DevicePath& path, const PastStates& past) {
+  /// The receiver's device, and a past with what is told of it.   RigidPredictor::set_device_path
+  void set_device_path(const DevicePath& path, const PastStates& past) {
     past_ = &past;
-    predictor_.know(path);
+    predictor_.set_device_path(path);
   }
 
   /// in   truth       the object's state of now; where a device drives it, its contact is told

@@ -77,11 +77,11 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, co
   set_widening(1);
 }
 
-void RigidEncoder::know(const DevicePath& path) {
+void RigidEncoder::set_device_path(const DevicePath& path) {
   if (!scene_.driven || !choice_) return;
-  predictor_.know(path);
+  predictor_.set_device_path(path);
   driven_.emplace(scene_, path);
-  choice_->know(path, driven_->past);
+  choice_->set_device_path(path, driven_->past);
 }
 
 void RigidEncoder::set_widening(double factor) noexcept {
@@ -96,8 +96,8 @@ void RigidEncoder::set_widening(double factor) noexcept {
   wakes_all_ = true;
 }
 
-void RigidEncoder::look_from(std::span<const Vec3> places) noexcept {
-  if (levels_) levels_->look_from(places);
+void RigidEncoder::look_from(std::span<const Vec3> viewpoints) noexcept {
+  if (levels_) levels_->look_from(viewpoints);
 }
 
 void RigidEncoder::set_link(const LinkState& link) noexcept {
@@ -108,7 +108,7 @@ void RigidEncoder::set_link(const LinkState& link) noexcept {
   loses_ = link.loss >= kSomeLoss;
   for (std::size_t i = 0; i < follow_up_.size(); ++i) {
     const auto soon = static_cast<std::int64_t>(std::ceil(kFollowUp[i] * scene_.tick_rate));
-    follow_up_[i] = link.answer <= 0 ? 0 : link.loss >= kSomeLoss && !link.copies ? soon : link.answer;
+    follow_up_[i] = link.ack_timeout <= 0 ? 0 : link.loss >= kSomeLoss && !link.copies ? soon : link.ack_timeout;
   }
 }
 
@@ -229,7 +229,7 @@ double RigidEncoder::haptic_ratio_of(std::uint32_t object, const RigidPose& show
   return out;
 }
 
-/// An update would bring the shown pose nearer to the truth: they are not at the same place of the grid.
+/// An update would bring the shown pose nearer to the truth: they are not at the same point of the grid.
 bool RigidEncoder::can_improve(std::uint32_t object, const RigidPose& shown) const noexcept {
   const Residual rest = quantise_pose(shown, truth_.state(object), scene_.objects[object].dof, 0, scene_.grid);
   return rest.of != Residual{}.of;
@@ -395,7 +395,7 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
 }
 
 /// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
-/// coarse for the permitted force error, or the way too long for one update, the nearest place that it can name.
+/// coarse for the permitted force error, or the way too long for one update, the nearest point that it can name.
 Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction, const RigidState& told) const noexcept {
   const std::uint32_t object = update.object;
   const RigidState& truth = truth_.state(object);

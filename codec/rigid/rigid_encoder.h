@@ -47,13 +47,13 @@ class RigidEncoder {
   /// time O(objects that move, are touched, or whose prediction does), < 1 us per object, < 4 us per update; what others found out with the
   ///      same: 50 ns and 100 ns. What rests costs nothing. No allocation.
   Result<Payload> encode(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
-  void know(const DevicePath& path);  ///< of the receiver's device.   pre  it outlives the encoder.   allocates
+  void set_device_path(const DevicePath& path);  ///< of the receiver's device.   pre  it outlives the encoder.   allocates
   void commit(const RigidStates& base, RigidStates& next) noexcept;
   void acknowledge(std::uint64_t number) noexcept;
   void forget_last() noexcept;
   void set_link(const LinkState& link) noexcept;
   void set_widening(double factor) noexcept;  ///< of all thresholds.   pre  factor >= 1
-  void look_from(std::span<const Vec3> places) noexcept;
+  void look_from(std::span<const Vec3> viewpoints) noexcept;
 
  private:
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min() / 2;  // a tick

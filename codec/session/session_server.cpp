@@ -141,7 +141,7 @@ ServerConnection* SessionServer::Impl::follow(std::uint64_t peer, std::uint64_t 
   return known->get();
 }
 
-/// A place for the client, or why there is none.
+/// A slot for the client, or why there is none.
 Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept {
   const auto refuse = [&](LeaveReason reason) {
     reply.emplace(peer, Refusal{said.nonce, reason});
@@ -154,29 +154,29 @@ Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, co
     return {};
   }
   const bool is_here = find(peer) != nullptr;
-  ServerConnection* place = follow(peer, said.token);
-  if (place != nullptr && place->state() != SessionState::closed && place->nonce() == said.nonce) {
-    if (!is_here) note({.kind = ServerEvent::Kind::moved, .client = place->client()});
-    reply.emplace(peer, place->welcome());
+  ServerConnection* slot = follow(peer, said.token);
+  if (slot != nullptr && slot->state() != SessionState::closed && slot->nonce() == said.nonce) {
+    if (!is_here) note({.kind = ServerEvent::Kind::moved, .client = slot->client()});
+    reply.emplace(peer, slot->welcome());
     return {};
   }
-  if (place != nullptr) drop(*place, SessionEvent::left, LeaveReason::bye);  // the client has begun anew
+  if (slot != nullptr) drop(*slot, SessionEvent::left, LeaveReason::bye);  // the client has begun anew
   if (!served.fits(said)) {
     refuse(LeaveReason::limits);
     return {};
   }
-  if (place == nullptr) {
+  if (slot == nullptr) {
     const auto free = std::ranges::find_if(connections, [](const auto& c) { return c->is_free(); });
     if (free == connections.end()) {
       refuse(LeaveReason::full);
       return {};
     }
-    place = free->get();
+    slot = free->get();
   }
-  place->open(peer, said, served, draw(entropy), now);
-  peers[place->client()] = peer;
-  reply.emplace(peer, place->welcome());
-  note({.kind = ServerEvent::Kind::joined, .client = place->client()});
+  slot->open(peer, said, served, draw(entropy), now);
+  peers[slot->client()] = peer;
+  reply.emplace(peer, slot->welcome());
+  note({.kind = ServerEvent::Kind::joined, .client = slot->client()});
   return {};
 }
 

@@ -95,9 +95,9 @@ TEST_F(CTrace, TellsWhatTheTraceHolds) {
 }
 
 TEST_F(CTrace, TellsWhichForcesOfAUserItKnows) {
-  const std::pair<KnownForces, std::uint32_t> cases[] = {{KnownForces::both, TACTUS_FORCE_FELT | TACTUS_FORCE_SERVER},
-                                                         {KnownForces::felt, TACTUS_FORCE_FELT},
-                                                         {KnownForces::server, TACTUS_FORCE_SERVER}};
+  const std::pair<RecordedForces, std::uint32_t> cases[] = {{RecordedForces::both, TACTUS_FORCE_FELT | TACTUS_FORCE_SERVER},
+                                                         {RecordedForces::felt, TACTUS_FORCE_FELT},
+                                                         {RecordedForces::server, TACTUS_FORCE_SERVER}};
   for (const auto& [known, told] : cases) {
     recording.info.users[1].forces = known;
     const TempFile again;

@@ -103,7 +103,7 @@ bool run(const Case& c) {
   if (!sender || !receiver) return false;
   const auto path = std::make_shared<DevicePath>(device_scene(**scene).value());
   path->shift(0, 0);
-  if (c.is_driven) sender->know(path), receiver->know(path);
+  if (c.is_driven) sender->set_device_path(path), receiver->set_device_path(path);
   Fnv1a stream, states, shown;
   std::vector<RigidSample> samples(bodies.size());
   std::mt19937_64 random(7);

@@ -120,7 +120,7 @@ Predictor chosen_after(double acceleration, const RigidState& current) {
   const auto path = testing::path_along(scene, 151, [](std::int64_t) { return Vec3{-1, 0, 0}; });
   PastStates past(*scene);
   PredictorChoice choice(*scene, past);
-  choice.know(*path, past);
+  choice.set_device_path(*path, past);
   RigidState truth;
   for (std::int64_t tick = 0; tick <= 150; ++tick) {
     const double t = 1e-3 * static_cast<double>(tick);

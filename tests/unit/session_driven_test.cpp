@@ -40,7 +40,7 @@ struct DeviceEnds {
     EXPECT_TRUE(client.submit(now, tick, truth.of(tick, sample, {})));
     say(client, up, 20 * kMillisecond);
     hear(server, up, Direction::up);
-    if (const auto change = pace.step(tick, tick - 20)) {  // known to both at once
+    if (const auto change = mapping.step(tick, tick - 20)) {  // known to both at once
       server.path->shift(change->from, change->offset);
       client.path->shift(change->from, change->offset);
     }
@@ -59,14 +59,14 @@ struct DeviceEnds {
     for (; !from.empty() && from.begin()->first <= now; from.erase(from.begin())) {
       const auto read = read_datagram(from.begin()->second, direction).value();
       const auto heard = to.handle(now, std::get<Numbered>(read), [](const Part&, const auto&) { return Result<void>(); });
-      if (heard && heard->tick && direction == Direction::up) pace.heard(*heard->tick);
+      if (heard && heard->tick && direction == Direction::up) mapping.heard(*heard->tick);
     }
   }
 
   double loss;
   Exchange client{Direction::up, kEpoch, 0}, server{Direction::down, kEpoch, 0};
   DeviceTruth truth{1000, false};
-  DevicePace pace{1000};
+  DeviceTickMapping mapping{1000};
   std::multimap<std::uint64_t, Bytes> up, down;
   std::mt19937_64 random{3};
   std::uint64_t now = kMillisecond;
@@ -91,7 +91,7 @@ TEST(Driven, BothEndsKnowTheSamePath) {
       ends.loss = loss;
     }
     const std::uint64_t late = ends.server.traffic().packets_refused;
-    EXPECT_GT(late, 0u) << "a jitter of 4 ms is more than the pace begins with";
+    EXPECT_GT(late, 0u) << "a jitter of 4 ms is more than the mapping begins with";
     EXPECT_LT(late, 20u) << "it has got slower";
   }
 }
@@ -213,7 +213,7 @@ Cost cost(const char* name, std::uint64_t seed, bool known) {
   auto receiver = Receiver::create(declared).value();
   const auto path = std::make_shared<DevicePath>(device_scene(*declared).value());
   path->shift(0, 0);
-  if (known) sender.know(path), receiver.know(path);
+  if (known) sender.set_device_path(path), receiver.set_device_path(path);
   auto simulation = sim::Simulation::create(scene, {.seed = seed, .grip = {}, .channel = {}}).value();
   FrameTruth truth(simulation.info());
   Cost out;
