@@ -78,7 +78,7 @@ class SharedTruth {
 /// Loss. With Baseline::previous each packet builds on the one before it in its substream. A receiver that misses a packet
 /// refuses the following ones (R-PKT-4) until a key packet, sent after key_interval or request_key(). With Baseline::acknowledged
 /// a packet builds on the newest state that acknowledge() named, so that every one that arrives can be decoded, and set_link() has states
-/// sent again. The bounds above still hold only for what arrived: a client that shows the past (Interpolation::playout) bends over the
+/// sent again. The bounds above still hold only for what arrived: a client that shows the past (Interpolation::playout) interpolates over the
 /// gaps. Baseline::repaired leaves loss to the transport. With both a packet that goes out anyway also names the rigid objects that are
 /// over half of a bound: where each packet has the headers of a datagram, these are most of the bits.
 /// A key packet of a layered object drops the shape outside the area of interest until the visual packet arrives. If no client joins or

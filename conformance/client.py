@@ -45,7 +45,7 @@ class Device:
         encoder.tree(models["REASON"], 2, 0)
         encoder.tree(models["LEVEL"], 4, 0)
         for k in range(2):                                  # position and velocity, rotation and angular velocity
-            pose = [round(c * self.scale) for c in place] if k == 0 else [0, 0, 0]
+            pose = [round(c * self.scale) for c in position] if k == 0 else [0, 0, 0]
             largest = 0
             for a in range(3):
                 encoder.signed(models[f"POSE[{k}][{0 if a == 0 else 4 + min(largest.bit_length(), 7)}]"], pose[a])

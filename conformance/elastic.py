@@ -78,7 +78,7 @@ class Shapes:
             if position is None:
                 proxy = Proxy()
                 continue
-            p = tuple(c * self.grid_step for c in place)
+            p = tuple(c * self.grid_step for c in position)
             proxy, push = surface.touch(p, proxy, i == 0, self.body.coupling, self.body.friction)
             if push:
                 pushes.append(push)

@@ -45,7 +45,8 @@ tl::expected<std::vector<RecordedSample>, Diagnostic> read_samples(TraceReader& 
 }  // namespace
 
 tl::expected<Recording, Diagnostic> Recording::read(const std::string& path, const RecordingOptions& options) try {
-  if (!(options.playback_rate > 0 && options.playback_rate <= 1000)) return refuse(path, fail(Errc::invalid_argument, "R-API-4").value(), "playback_rate");
+  if (!(options.playback_rate > 0 && options.playback_rate <= 1000))
+    return refuse(path, fail(Errc::invalid_argument, "R-API-4").value(), "playback_rate");
   auto reader = TraceReader::open(path, {});
   if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& info = reader->info();

@@ -65,7 +65,9 @@ std::optional<GuardReport> Visit::guard() const {
   return body && body->servo ? guard_report(*body->servo, body->begin) : std::nullopt;
 }
 
-TickTiming Visit::tick_timing(const Ticker& ticker) const { return body && body->servo ? tick_timing_of(body->servo->times()) : tick_timing_of(ticker); }
+TickTiming Visit::tick_timing(const Ticker& ticker) const {
+  return body && body->servo ? tick_timing_of(body->servo->times()) : tick_timing_of(ticker);
+}
 
 void Visit::note(const Error& error) {
   ++refused;
@@ -98,8 +100,10 @@ Outcome Visit::arrive() {
   if (body) {
     DeviceSenses senses = body->chosen.device->capabilities().senses;
     senses.buttons = true;
-    info.users.push_back(
-        {.name = body->shapes->scene().users[body->user].name, .senses = senses, .has_servo = true, .forces = RecordedForces::felt});
+    info.users.push_back({.name = body->shapes->scene().users[body->user].name,
+                          .senses = senses,
+                          .has_servo = true,
+                          .forces = RecordedForces::felt});
   }
   frame_ = replica_frame(scene);
   frame_.users.resize(info.users.size());

@@ -30,7 +30,7 @@ WebAnswer judge(const WebRequest& request, std::uint16_t port, const WebSite& si
   return {kLiveAnswer};
 }
 
-// ==== web door ====
+// ==== web server ====
 
 namespace {
 

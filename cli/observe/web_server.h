@@ -52,7 +52,7 @@ class Outbox {
 };
 
 // ==== web request ====
-// Which requests are answered. The door is open on this machine alone, but any page that a browser shows can make it knock: by an
+// Which requests are answered. The server listens on this machine alone, but any page that a browser shows can make it connect: by an
 // address of its own that resolves to this machine, or by a script.
 
 struct WebRequest {
@@ -76,7 +76,7 @@ struct WebPage {
   unsigned status = kPageAnswer;
 };
 
-/// What a door has.
+/// What a server has.
 struct WebSite {
   std::vector<std::string_view> targets;  ///< kLiveTarget: its pages may observe
   std::string_view nothing;               ///< sentence where none of them is meant

@@ -129,7 +129,7 @@ def text_of(path):
 
 def pointed(report, pointer):
     """The text of the value at a JSON pointer; None where there is none, or more than a value."""
-    for token in place.split("/")[1:]:
+    for token in pointer.split("/")[1:]:
         token = token.replace("~1", "/").replace("~0", "~")
         if isinstance(report, list) and token.isdecimal() and int(token) < len(report):
             report = report[int(token)]

@@ -96,7 +96,7 @@ TEST(Driven, BothEndsKnowTheSamePath) {
   }
 }
 
-TEST(Driven, APlaceIsLookedUpAgainOnceThePastHasChanged) {
+TEST(Driven, APositionIsLookedUpAgainOnceThePastHasChanged) {
   const SharedScene scene = testing::driven_scene();
   DevicePath path(device_scene(*scene).value());
   path.shift(0, 0);

@@ -164,7 +164,7 @@ TEST(Fragments, APacketThatGaveWayNeverComesBack) {
   EXPECT_GT(gone.size(), 1000u);
 }
 
-TEST(Fragments, APlaceThatIsUsedAgainForgetsAll) {
+TEST(Fragments, ASlotThatIsUsedAgainForgetsAll) {
   Fragments fragments(3 * kFragmentSize);
   for (std::uint64_t n = 10; n < 200; n += 10) expect_kept(Cut(n, 3 * kFragmentSize).give(fragments, n / 10 % 3));
   const Cut last(300, 2 * kFragmentSize + 5);

@@ -226,7 +226,7 @@ TEST(LinePacer, AfterATimeOutFewGoUntilSomethingIsHeard) {
   EXPECT_EQ(pacer.window(), 16u);
 }
 
-/// Of acknowledgements that lie about times or come out of order nothing follows but a pace between the fastest and none.
+/// Of acknowledgements that lie about times or come out of order nothing follows but a spacing between the fastest and none.
 TEST(LinePacer, AcknowledgementsThatLieChangeOnlyTheOwnPacing) {
   std::mt19937_64 random(5);
   LinePacer pacer(0);
