@@ -116,7 +116,7 @@ def flag_findings(book):
 
 
 def names_in(text: str) -> dict:
-    return {int(number): name for number, name in re.findall(r"(\d+) ([a-z]+)", text)}
+    return {int(number): name for number, name in re.findall(r"(\d+) ([a-z]+(?: [a-z]+)*)", text)}
 
 
 def session_findings(book):
