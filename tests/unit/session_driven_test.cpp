@@ -175,7 +175,7 @@ TEST(Driven, WherePacketsAreLostNothingIsDriven) {
 }
 
 /// Who joins a server that has been running for a minute is at its tick from the first packet on.
-TEST(Driven, APaceBeginsAtTheTickOfTheServer) {
+TEST(Driven, ATickMappingBeginsAtTheTickOfTheServer) {
   auto server = SessionServer::create(testing::driven_scene(), {.clients = 1}, 7, kMillisecond).value();
   auto client = SessionClient::create({.role = Role::participant}).value();
   std::uint64_t now = kMillisecond;
