@@ -152,7 +152,7 @@ def typescript(names, interface, parts):
         if "*" in kind:
             return "number"
         return {"void": "void", "int64_t": "bigint", "uint64_t": "bigint"}.get(kind, "number")
-    lines = ["// Made by bindings/generate.py.", "", "/** Functions of the module. Pointers are places in its memory. */",
+    lines = ["// Made by bindings/generate.py.", "", "/** Functions of the module. Pointers are addresses in its memory. */",
              "export interface Exports {", "  memory: WebAssembly.Memory;"]
     for name in names:
         result, arguments = interface.functions[name]

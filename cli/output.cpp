@@ -157,9 +157,9 @@ tl::expected<OutputFile, Failure> OutputFile::create_growing(const std::string& 
 }
 
 Outcome OutputFile::open_temporary() {
-  const fs::path place(path_);
+  const fs::path target(path_);
   for (int i = 0; i < kTries && !file_.is_open(); ++i) {
-    name_ = random_name(place.parent_path(), place.filename().string());
+    name_ = random_name(target.parent_path(), target.filename().string());
     file_ = Descriptor(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
     if (!file_.is_open() && errno != EEXIST) break;
   }

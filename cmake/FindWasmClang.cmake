@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# WasmClang::compiler, a clang that builds C++20 for wasm32-wasi; WASM_CXX_INCLUDE and WASM_CXX_LIBRARY, the place of its standard library;
+# WasmClang::compiler, a clang that builds C++20 for wasm32-wasi; WASM_CXX_INCLUDE and WASM_CXX_LIBRARY, the location of its standard library;
 # WasmClang::optimizer, which makes modules smaller.
 include(FindPackageHandleStandardArgs)
 

@@ -65,7 +65,7 @@ class Receiver {
   /// A packet of a session is decoded, and its state may be a baseline: it came before.   in  number, packet  as push_numbered()
   bool holds(std::uint64_t number, std::span<const std::uint8_t> packet) const noexcept;
 
-  /// This number of a session is not lost, and no packet of rigid objects has it: the replica need not bend over it.
+  /// This number of a session is not lost, and no packet of rigid objects has it: the replica need not interpolate over it.
   void skip_number(std::uint64_t number) noexcept;
 
   /// What the client shows.
@@ -74,7 +74,7 @@ class Receiver {
   const SharedScene& scene() const noexcept;
   /// State of a rigid object after a packet of them.   pre  push() or push_numbered() has just returned it
   const RigidState& object_after(const DecodedPacket& packet, std::uint32_t object) const noexcept;
-  /// Newest state of a rigid object, by its place in the scene.
+  /// Newest state of a rigid object, by its index in the scene.
   const RigidState& object(std::uint32_t object) const noexcept;
   /// Newest decoded displacements of a deformable object, V x 3, x 2^-position_exp m.   pre  object < scene.deformables.size()
   std::span<const std::array<std::int32_t, 3>> displacements(std::size_t object) const noexcept;

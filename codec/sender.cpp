@@ -221,7 +221,7 @@ void Sender::set_bound_scale(double factor) noexcept {
   if (impl_->loads) impl_->loads->codec().set_bound_scale(within);
 }
 
-void Sender::set_viewpoints(std::span<const Vec3> places) noexcept { impl_->rigid.codec().set_viewpoints(places); }
+void Sender::set_viewpoints(std::span<const Vec3> viewpoints) noexcept { impl_->rigid.codec().set_viewpoints(viewpoints); }
 
 void Sender::forget_last(std::size_t substream) noexcept {
   if (substream == 0) impl_->rigid.forget_last();

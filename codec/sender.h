@@ -79,7 +79,7 @@ class SharedTruth {
 /// Loss. With Baseline::previous each packet builds on the one before it in its substream. A receiver that misses a packet
 /// refuses the following ones (R-PKT-4) until a key packet, sent after key_interval or request_key(). With Baseline::acknowledged
 /// a packet builds on the newest state that acknowledge() named, so that every one that arrives can be decoded, and set_link() has states
-/// sent again. The bounds above still hold only for what arrived: a client that shows the past (Interpolation::playout) bends over the
+/// sent again. The bounds above still hold only for what arrived: a client that shows the past (Interpolation::playout) interpolates over the
 /// gaps. Baseline::repaired leaves loss to the transport. With both a packet that goes out anyway also names the rigid objects that are
 /// over half of a bound: where each packet has the headers of a datagram, these are most of the bits.
 /// A key packet of a layered object drops the shape outside the area of interest until the visual packet arrives. If no client joins or
@@ -142,9 +142,9 @@ class Sender {
   void set_bound_scale(double factor) noexcept;
 
   /// In a scene with interest: where its client looks from, from the next tick on, so that what is far is sent with wider bounds or not at all
-  /// (SceneBuilder::interest()). Before the first call all rigid objects are sent in full; where no place is known, none.
-  /// in   places  [m] at most two: its device, and its eyes or whatever stands for them. Others are ignored.   time 10 ns
-  void set_viewpoints(std::span<const Vec3> places) noexcept;
+  /// (SceneBuilder::interest()). Before the first call all rigid objects are sent in full; where no viewpoint is known, none.
+  /// in   viewpoints  [m] at most two: its device, and its eyes or whatever stands for them. Others are ignored.   time 10 ns
+  void set_viewpoints(std::span<const Vec3> viewpoints) noexcept;
 
   /// Report that the newest packet of this substream will not be decoded (it is dropped, or known to be lost). The next one
   /// builds on the state before it, or on the initial state if the scene's baseline_span does not reach that far. At most once
@@ -152,7 +152,7 @@ class Sender {
   void forget_last(std::size_t substream) noexcept;
 
   const SharedScene& scene() const noexcept;
-  /// State of a rigid object as a receiver of all packets has it, by its place in the scene.
+  /// State of a rigid object as a receiver of all packets has it, by its index in the scene.
   const RigidState& object(std::uint32_t object) const noexcept;
   /// Hash of a substream's state; equals the receiver's after the same packets.   pre  the substream exists
   std::uint64_t state_hash(std::size_t substream) const noexcept;

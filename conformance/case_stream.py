@@ -130,8 +130,8 @@ def declaration_elements(text: str, scenes: dict[str, list[Element]]) -> list[El
     for change in filter(None, (c.strip() for c in changes.removeprefix("but ").split(","))):
         element, value = change.split(" ", 1)
         key, _, number = element.partition("[")
-        places = [i for i, (n, _) in enumerate(elements) if n == key]
-        elements[places[int(number.rstrip("]") or 0)]] = parse(f"{key} {value}")[0]
+        indices = [i for i, (n, _) in enumerate(elements) if n == key]
+        elements[indices[int(number.rstrip("]") or 0)]] = parse(f"{key} {value}")[0]
     return elements + parse(added)
 
 
@@ -158,10 +158,10 @@ def stream_of(blocks: list[Block], name: str, earlier: Earlier) -> bytes:
 
 
 # ---- Bytes to blocks ------------------------------------------------------------------------------------------------
-def place(elements: list[Element], index: int) -> str:
+def label(elements: list[Element], index: int) -> str:
     name = elements[index][0]
-    places = [i for i, (n, _) in enumerate(elements) if n == name]
-    return name if len(places) == 1 else f"{name}[{places.index(index)}]"
+    indices = [i for i, (n, _) in enumerate(elements) if n == name]
+    return name if len(indices) == 1 else f"{name}[{indices.index(index)}]"
 
 
 def declaration_text(elements: list[Element], scenes: dict[str, list[Element]]) -> str:
@@ -178,7 +178,7 @@ def declaration_text(elements: list[Element], scenes: dict[str, list[Element]]) 
             continue
         text = f"as {name}"
         if changed:
-            text += " but " + ", ".join(f"{place(elements, i)} {elements[i][1]}" for i in changed)
+            text += " but " + ", ".join(f"{label(elements, i)} {elements[i][1]}" for i in changed)
         if len(elements) > len(other):
             text += " and " + " ".join(words(elements[len(other):]))
         if len(text) < len(best) and (not changed or len(text) < 0.7 * len(full)):

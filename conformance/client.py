@@ -3,7 +3,7 @@
 """A client written from the specification alone: joins `tactus serve` over UDP and moves a device about.
 
   client.py PORT [--seconds S] [--observe] [--token FILE] [--seat N]
-      prints one line of JSON at the end: packets, epochs, round trip, hash of each substream's state; in a driven scene also the paces of the
+      prints one line of JSON at the end: packets, epochs, round trip, hash of each substream's state; in a driven scene also the tick mappings of the
       device, and how many of its packets did not act
 
 It ends when the server leaves, or after S seconds. Without an answer it joins again by itself, by its token, that --token also keeps for
@@ -38,14 +38,14 @@ class Device:
 
     def packet(self, now: float) -> bytes:
         angle = self.SPEED * (now - self.start)
-        place = (self.RADIUS * math.cos(angle), self.RADIUS * math.sin(angle), 0.0)
+        position = (self.RADIUS * math.cos(angle), self.RADIUS * math.sin(angle), 0.0)
         models, encoder = Models("rigid-start-models.csv"), RangeEncoder()
         encoder.bit(models["KEY"][1], 1)
         encoder.magnitude(models["TICK"], int((now - self.start) * self.tick_rate))
         encoder.tree(models["REASON"], 2, 0)
         encoder.tree(models["LEVEL"], 4, 0)
         for k in range(2):                                  # position and velocity, rotation and angular velocity
-            pose = [round(c * self.scale) for c in place] if k == 0 else [0, 0, 0]
+            pose = [round(c * self.scale) for c in position] if k == 0 else [0, 0, 0]
             largest = 0
             for a in range(3):
                 encoder.signed(models[f"POSE[{k}][{0 if a == 0 else 4 + min(largest.bit_length(), 7)}]"], pose[a])
@@ -108,7 +108,7 @@ def main() -> int:
     report = {"client": epoch.client, "packets": epoch.packets, "epochs": epochs, "round_trip_us": epoch.round_trip and epoch.round_trip[0],
             "state_hashes": [f"{d.state_hash():016x}" for d in epoch.decoders.substreams.values()]}
     if epoch.path:
-        report.update({"paces": len(epoch.path.offsets), "without_effect": sum(not epoch.path.takes_effect(n) for n in epoch.path.states)})
+        report.update({"tick_mappings": len(epoch.path.offsets), "without_effect": sum(not epoch.path.takes_effect(n) for n in epoch.path.states)})
     print(json.dumps(report))
     return 0
 

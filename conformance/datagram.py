@@ -15,12 +15,12 @@ JOIN, WELCOME, REFUSAL, LEAVE = range(4)                    # kinds of handshake
 FORMS, KINDS = 4, 4                                         # how many there are, the reserved form among them
 ACK, CLOCK, BUTTONS, PIECE, STATE, HASH, FRAGMENT, PACKET_PART = range(1, 9)
 REPORT = PIECE                                              # up
-PACE, SEAT, BASELINES = BUTTONS, STATE, HASH                # down
+TICK_MAPPING, SEAT, BASELINES = BUTTONS, STATE, HASH                # down
 ACKNOWLEDGED = 1                                            # the last policy of baselines
 LARGEST_DATAGRAM = 1200
 BYE, WRONG_VERSION, FULL, TOO_LARGE, SILENCE, NO_SCENE, PROTOCOL = range(7)   # reasons
 NO_TIMING, END_OF_TIME = 65535, 1 << 53
-END_OF_TICKS, FARTHEST_PACE = 1 << 32, 1 << 33
+END_OF_TICKS, FARTHEST_OFFSET = 1 << 32, 1 << 33
 
 CUT, SPARE = ("truncated", "R-SES-3"), ("malformed", "R-SES-3")
 
@@ -55,7 +55,7 @@ def part(kind: int, data: bytes) -> bytes:
 
 
 COMES = {UP: (ACK, BUTTONS, REPORT, STATE, HASH, FRAGMENT, PACKET_PART),
-         DOWN: (ACK, CLOCK, PACE, PIECE, SEAT, BASELINES, FRAGMENT, PACKET_PART)}
+         DOWN: (ACK, CLOCK, TICK_MAPPING, PIECE, SEAT, BASELINES, FRAGMENT, PACKET_PART)}
 
 
 def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
@@ -63,9 +63,9 @@ def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
         out = e.number(2, CUT), e.number(2, CUT), e.varint(CUT, SPARE)
     elif kind == CLOCK:
         out = (e.varint(CUT, SPARE),)
-    elif kind == PACE and direction == DOWN:
+    elif kind == TICK_MAPPING and direction == DOWN:
         out = e.varint(CUT, SPARE), zigzag(e.varint(CUT, SPARE))
-        require(out[0] < END_OF_TICKS and abs(out[1]) <= FARTHEST_PACE, *SPARE)
+        require(out[0] < END_OF_TICKS and abs(out[1]) <= FARTHEST_OFFSET, *SPARE)
     elif kind == BUTTONS:
         out = e.number(4, CUT), e.number(4, CUT)
     elif kind == BASELINES and direction == DOWN:
@@ -76,7 +76,7 @@ def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
     elif kind == REPORT and direction == UP:
         out = e.varint(CUT, SPARE), e.number(1, CUT)
         if out[1] & 2:
-            out += tuple(e.number(4, CUT) for _ in range(3))      # the place, as unsigned numbers: nobody looks here
+            out += tuple(e.number(4, CUT) for _ in range(3))      # the viewpoint, as unsigned numbers: nobody looks here
         require(out[1] <= 3, *SPARE)
     elif kind == HASH:
         out = e.number(1, CUT), e.number(2, CUT), e.number(4, CUT)

@@ -32,15 +32,15 @@ def dot(a: list, b: list) -> float:
 # ---- Networks -------------------------------------------------------------------------------------------------------
 class Network:
     def __init__(self, rest: list, members: list[int], tree: Hierarchy, fixed: set):
-        place = {v: i for i, v in enumerate(members)}
+        index = {v: i for i, v in enumerate(members)}
         self.fixed = [i for i, v in enumerate(members) if v in fixed]
         self.size = len(members)
         pairs = set()
         for v in members:
             others = [w for w in members if rest[w] != rest[v]]
-            others.sort(key=lambda w: (tree.distance(v, w), place[w]))
+            others.sort(key=lambda w: (tree.distance(v, w), index[w]))
             for w in others[:MOST_NEAR]:
-                pairs.add((min(place[v], place[w]), max(place[v], place[w])))
+                pairs.add((min(index[v], index[w]), max(index[v], index[w])))
         self.springs = []
         for v, w in sorted(pairs):
             d = [float(rest[members[w]][axis] - rest[members[v]][axis]) for axis in AXES]
@@ -168,12 +168,12 @@ def start_block(order: list[int], fixed: set, columns: int) -> list:
     return x
 
 
-def from_parents(tree: Hierarchy, place: dict, v: int, x: list, fixed: set) -> list:
+def from_parents(tree: Hierarchy, order_index: dict, v: int, x: list, fixed: set) -> list:
     """The three rows of a vertex."""
     rows = [[0.0] * len(x[0]) for _ in AXES]
     for parent, weight in zip(tree.parents[0][v], tree.weights[0][v]) if v not in fixed else ():
         for axis in AXES:
-            from_row = x[3 * place[parent] + axis]
+            from_row = x[3 * order_index[parent] + axis]
             rows[axis] = [a + (weight * 2.0 ** -15) * b for a, b in zip(rows[axis], from_row)]
     return rows
 
@@ -190,7 +190,7 @@ def rounded(u: list) -> Mode:
 def computed_modes(item: DeformableObject) -> list[Mode]:
     tree = Hierarchy(item, sets=1)                          # set 0
     order, fixed = tree.order, set(item.fixed)
-    place = {v: i for i, v in enumerate(order)}
+    order_index = {v: i for i, v in enumerate(order)}
     free = [0]
     for v in order:
         free.append(free[-1] + (v not in fixed))
@@ -199,8 +199,8 @@ def computed_modes(item: DeformableObject) -> list[Mode]:
     x = start_block(order[:stages[0]], fixed, min(item.mode_count + SPARE_COLUMNS, 3 * free[stages[0]]))
     for m in stages:
         for v in order[len(x) // 3:m]:
-            x += from_parents(tree, place, v, x, fixed)
-        members = order[:m] + [v for v in anchors if place[v] >= m]
+            x += from_parents(tree, order_index, v, x, fixed)
+        members = order[:m] + [v for v in anchors if order_index[v] >= m]
         network = Network(item.rest, members, tree, fixed)
         if x[0]:
             x = relaxed(network, x, 8 if m == stages[0] else 3)[:3 * m]
@@ -208,8 +208,8 @@ def computed_modes(item: DeformableObject) -> list[Mode]:
     for k in range(item.mode_count):
         u = [[row[k] if k < len(row) else 0.0] for row in x]
         for v in order[stages[-1]:]:
-            u += from_parents(tree, place, v, u, fixed)
-        modes.append(rounded([u[3 * place[v] + axis][0] for v in range(len(order)) for axis in AXES]))
+            u += from_parents(tree, order_index, v, u, fixed)
+        modes.append(rounded([u[3 * order_index[v] + axis][0] for v in range(len(order)) for axis in AXES]))
     return modes
 
 

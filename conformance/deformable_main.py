@@ -227,7 +227,7 @@ class MainCodec:
             if decoder.bit(models["SAME_TRIANGLE"][1]):
                 return before
             if decoder.bit(models["NEAR_TRIANGLE"][1]):
-                number = decoder.tree(models["NEAR_PLACE"], 6)
+                number = decoder.tree(models["NEAR_INDEX"], 6)
                 near = ring_list(self.item, self.triangles_of, before, 2)[1:64]
                 return near[number] if number < len(near) else NONE
         return raw_number(decoder, (len(self.item.triangles) - 1).bit_length())

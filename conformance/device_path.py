@@ -18,7 +18,7 @@ def device_scene(scene: Declaration) -> Declaration:
 
 
 class DevicePath:
-    """The states of a device in its scene, by the numbers of their packets, which of these act, and its paces."""
+    """The states of a device in its scene, by the numbers of their packets, which of these act, and its tick mappings."""
 
     def __init__(self, scene: Declaration):
         self.scene = scene
@@ -26,7 +26,7 @@ class DevicePath:
         self.accepted: set[int] = set()
         self.acknowledged = 0                               # the highest
         self.revision = 0                                   # of what is known of the past
-        self.offsets: dict[int, int] = {}                   # of paces, by the tick of the server from which they hold
+        self.offsets: dict[int, int] = {}                   # of tick mappings, by the tick of the server from which they hold
 
     def begin(self, tick: int, offset: int) -> None:
         if tick > max(self.offsets, default=-1):
@@ -54,7 +54,7 @@ class DevicePath:
     def takes_effect(self, number: int) -> bool:
         return number > self.acknowledged or number in self.accepted
 
-    def place(self, t: int) -> Optional[tuple]:
+    def position(self, t: int) -> Optional[tuple]:
         tick = self.device_tick(t)
         if tick is None:
             return None

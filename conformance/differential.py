@@ -86,8 +86,8 @@ def damaged_bytes(data: bytes, other: bytes, rng: random.Random) -> bytes:
         new = varint(value) if rng.randrange(2) else struct.pack("<I", value)
         return data[:at] + new + data[at + len(new):]
     if kind == 5:
-        place = rng.randrange(len(other) + 1)
-        return data[:at] + other[place:place + length] + data[at + length:]
+        start = rng.randrange(len(other) + 1)
+        return data[:at] + other[start:start + length] + data[at + length:]
     return data[:at]
 
 

@@ -11,7 +11,7 @@ from scene import Declaration, State
 AXES = range(3)
 NOTHING = (0, 0, 0)
 
-Place = Callable[[int], Optional[tuple]]                    # of the device, by tick (65, section 4)
+Position = Callable[[int], Optional[tuple]]                    # of the device, by tick (65, section 4)
 
 
 def lim(v: int, n: int) -> int:
@@ -108,10 +108,10 @@ class DrivenBody:
             self.rub = lim(round_div(length(level) * deceleration, weight), 30)
         self.first: Optional[int] = None
 
-    def step(self, place: Optional[tuple]) -> None:
-        """To the next tick; `place` is that of the device at this one."""
+    def step(self, position: Optional[tuple]) -> None:
+        """To the next tick; `position` is that of the device at this one."""
         m = rows(self.q)
-        pull = self.pull(m, place)
+        pull = self.pull(m, position)
         if self.held:
             self.step_held(m, pull)
         elif self.speed > 0:
@@ -143,11 +143,11 @@ class DrivenBody:
         self.q = renorm(mul(self.q, small(tuple(round_shift(s * c, 22) for c in self.about))))
         self.speed = speed - round_shift(speed * self.constants.damping, 20)
 
-    def pull(self, m: tuple, place: Optional[tuple]) -> tuple:
+    def pull(self, m: tuple, position: Optional[tuple]) -> tuple:
         """Acceleration by the device, object's frame."""
-        if not self.touching or place is None:
+        if not self.touching or position is None:
             return self.lets_go()
-        d = tuple(round_shift((p << (32 - self.scene.position_exp)) - x, 4) for p, x in zip(place, self.x))
+        d = tuple(round_shift((p << (32 - self.scene.position_exp)) - x, 4) for p, x in zip(position, self.x))
         if any(abs(c) > 1 << 28 for c in d):
             return self.lets_go()
         d = back(m, d)
@@ -171,10 +171,10 @@ class DrivenBody:
         if far > rim:
             self.c = tuple(lim(f + round_div(c * rim, far), 28) for f, c in zip(foot, lag))
 
-    def pose(self, t: int, place: Place) -> tuple[tuple, tuple]:
+    def pose(self, t: int, position: Position) -> tuple[tuple, tuple]:
         """What a client with a device shows in place of predict(); t never falls."""
         while self.tick < min(t, self.state.tick + self.scene.max_extrapolation):
-            self.step(place(self.tick))
+            self.step(position(self.tick))
             self.tick += 1
         return self.shown()
 

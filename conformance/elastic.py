@@ -42,7 +42,7 @@ class Shapes:
         self.ended = False
 
     def shape(self, n: int) -> Optional[Shape]:
-        """Shape n; none without a pace or after the end, and the first one for frames before."""
+        """Shape n; none without a tick mapping or after the end, and the first one for frames before."""
         if not self.path.offsets:
             return None
         begin = min(self.path.offsets) // self.ticks
@@ -74,11 +74,11 @@ class Shapes:
         surface = Surface(self.item.triangles, self.triangles_of, s)
         pushes, proxy = [], shape.proxy
         for i in range(self.ticks):
-            place = self.path.place(n * self.ticks + i)
-            if place is None:
+            position = self.path.position(n * self.ticks + i)
+            if position is None:
                 proxy = Proxy()
                 continue
-            p = tuple(c * self.grid_step for c in place)
+            p = tuple(c * self.grid_step for c in position)
             proxy, push = surface.touch(p, proxy, i == 0, self.body.coupling, self.body.friction)
             if push:
                 pushes.append(push)

@@ -70,7 +70,7 @@ def elements_and_masses(body: ElasticBody) -> tuple[list[Element], list[float]]:
 # ---- Order (section 3.2) --------------------------------------------------------------------------------------------
 class Order(NamedTuple):
     order: list[int]                                        # of the free vertices
-    place: dict[int, int]                                   # of each in `order`
+    order_index: dict[int, int]                                   # of each in `order`
     first: list[int]
 
 
@@ -97,8 +97,8 @@ def order_of(body: ElasticBody) -> Order:
             order += part
             done.update(part)
     order.reverse()
-    place = {v: i for i, v in enumerate(order)}
-    return Order(order, place, [min([i, *(place[w] for w in near[v])]) for i, v in enumerate(order)])
+    order_index = {v: i for i, v in enumerate(order)}
+    return Order(order, order_index, [min([i, *(order_index[w] for w in near[v])]) for i, v in enumerate(order)])
 
 
 def work(order: Order) -> int:
@@ -117,7 +117,7 @@ class Matrix:
     def __init__(self, order: Order, elements: list[Element], mass: list[float], heavy: float, stiff: float):
         self.first = [3 * order.first[row // 3] for row in range(3 * len(order.order))]
         self.rows = [[0.0] * (row + 1 - first) for row, first in enumerate(self.first)]
-        self.assemble(order.place, elements, stiff)
+        self.assemble(order.order_index, elements, stiff)
         for i, v in enumerate(order.order):
             for a in AXES:
                 self.rows[3 * i + a][-1] += heavy * mass[v]
@@ -126,11 +126,11 @@ class Matrix:
         for row in range(len(self.rows)):
             self.factor(row)
 
-    def assemble(self, place: dict[int, int], elements: list[Element], stiff: float) -> None:
+    def assemble(self, order_index: dict[int, int], elements: list[Element], stiff: float) -> None:
         for corners, g, mu2, lambda_ in elements:
-            places = [place.get(c) for c in corners]
-            for r, i in enumerate(places):
-                for q, j in enumerate(places):
+            rows = [order_index.get(c) for c in corners]
+            for r, i in enumerate(rows):
+                for q, j in enumerate(rows):
                     if i is None or j is None or j > i:
                         continue
                     along = dot(g[r], g[q])

@@ -33,7 +33,7 @@ READS = {"take", "varint", "next"}                          # what takes bytes o
 
 
 class Mutation(NamedTuple):
-    """`slots` are places in lists of nodes or fields of nodes, and what is put there."""
+    """`slots` are positions in lists of nodes or fields of nodes, and what is put there."""
     kind: str
     line: int
     where: str                                              # function, empty outside of any
@@ -46,7 +46,7 @@ class Mutant(NamedTuple):
     module: str
     mutation: Mutation
 
-    def place(self) -> str:
+    def location(self) -> str:
         return f"{self.module}.py:{self.mutation.line}"
 
 

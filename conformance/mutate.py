@@ -256,14 +256,14 @@ def make_report(chosen: list[Mutant], everything: list[Mutant], known: dict[str,
     return {
         "format": 1, **score(counted, known), "equivalent": len(chosen) - len(counted),
         **{title: {name: score(of, known) for name, of in group.items() if of} for title, group in groups.items()},
-        "survivors": [{"place": m.place(), "kind": m.mutation.kind, "id": m.id} for m in counted if not known[m.id].by],
+        "survivors": [{"location": m.location(), "kind": m.mutation.kind, "id": m.id} for m in counted if not known[m.id].by],
         "not_equivalent": [m.id for m in chosen if m.id in equivalent and known[m.id].by],
         "unknown": sorted(set(equivalent) - ids)}
 
 
 def print_report(report: dict) -> None:
     for survivor in report["survivors"]:
-        print(f"{survivor['place']}: {survivor['kind']}: {survivor['id']}")
+        print(f"{survivor['location']}: {survivor['kind']}: {survivor['id']}")
     for title in ("kinds", "modules"):
         print(f"\n| {title[:-1]} | mutants | caught | |\n|---|---|---|---|")
         for name, part in report[title].items():
@@ -281,10 +281,10 @@ def choose(everything: list[Mutant], options: argparse.Namespace) -> list[Mutant
     if not chosen:
         raise ValueError(f"no mutant of {options.only}")
     if options.sample and options.sample < len(chosen):
-        def place(mutant: Mutant) -> bytes:                 # does not depend on which other mutants there are
+        def rank(mutant: Mutant) -> bytes:                 # does not depend on which other mutants there are
             return hashlib.sha256(f"{options.seed} {mutant.id}".encode()).digest()
-        picked = set(sorted(map(place, chosen))[:options.sample])
-        chosen = [m for m in chosen if place(m) in picked]
+        picked = set(sorted(map(rank, chosen))[:options.sample])
+        chosen = [m for m in chosen if rank(m) in picked]
     return chosen
 
 
@@ -305,7 +305,7 @@ def main(arguments: list[str], root: Path) -> int:
         everything = [m for module in modules.values() for m in module.mutants]
         chosen = choose(everything, options)
         if options.list:
-            print("\n".join(f"{m.place()}: {m.mutation.kind}: {m.id}" for m in chosen))
+            print("\n".join(f"{m.location()}: {m.mutation.kind}: {m.id}" for m in chosen))
             return 0
         suite = Suite(root, options.largest)
         results = Results(options.results, suite)

@@ -28,7 +28,7 @@ class Part(NamedTuple):
 
 
 class Entry(NamedTuple):
-    fields: dict                                            # what the list says of a case, but for the places
+    fields: dict                                            # what the list says of a case, but for the extents
     input: bytes                                            # without the bytes that are repeated
     answer: bytes
 
@@ -50,21 +50,21 @@ def with_repeat(data: bytes, repeat: Optional[dict]) -> bytes:
     return data[:repeat["at"]] + bytes.fromhex(repeat["bytes"]) * repeat["times"] + data[repeat["at"]:]
 
 
-def case_json(fields: dict, places: str) -> str:
+def case_json(fields: dict, extents: str) -> str:
     """One case of a list, on three or four lines."""
     def members(names: tuple) -> str:
         return ", ".join(f'"{name}": {json.dumps(fields[name], ensure_ascii=False)}' for name in names if name in fields)
 
     first = members(("name", "result", *MEMBERS))
     second = members(("profile", "flags", "args", "repeat"))
-    return f'    {{{first},\n     {second},\n     {places}"sha256": "{fields["sha256"]}",\n     {members(("what",))}}}'
+    return f'    {{{first},\n     {second},\n     {extents}"sha256": "{fields["sha256"]}",\n     {members(("what",))}}}'
 
 
 def list_json(stem: str, what: str, entries: list[Entry], form: int) -> str:
     cases, offset, answer = [], 0, 0
     for entry in entries:
-        places = f'"input": [{offset}, {len(entry.input)}], "answer": [{answer}, {len(entry.answer)}], ' if form == FORMAT else ""
-        cases.append(case_json(entry.fields, places))
+        extents = f'"input": [{offset}, {len(entry.input)}], "answer": [{answer}, {len(entry.answer)}], ' if form == FORMAT else ""
+        cases.append(case_json(entry.fields, extents))
         offset += len(entry.input)
         answer += len(entry.answer)
     head = f'{{\n  "format": {form},\n  "stem": "{stem}",\n  "what": {json.dumps(what)},\n  "cases": [\n'
@@ -90,8 +90,8 @@ def unpack(root: Path, folder: Path) -> int:
         own.mkdir(parents=True, exist_ok=True)
         entries = []
         for fields in listed["cases"]:
-            data, answer = (Part(base.with_suffix(suffix), *fields.pop(place)).read()
-                            for suffix, place in ((".pack", "input"), (".answers", "answer")))
+            data, answer = (Part(base.with_suffix(suffix), *fields.pop(part)).read()
+                            for suffix, part in ((".pack", "input"), (".answers", "answer")))
             (own / f"{fields['name']}{'.script' if is_script(fields) else '.tct'}").write_bytes(data)
             (own / f"{fields['name']}.jsonl").write_bytes(answer)
             entries.append(Entry(fields, data, answer))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 60 of the specification, section 7: a client that shows the past and bends over known gaps."""
+"""Chapter 60 of the specification, section 7: a client that shows the past and interpolates over known gaps."""
 from __future__ import annotations
 
 import struct
@@ -59,7 +59,7 @@ class Playout:
             return predict(self.scene, a.state, s)
         if all(number in self.heard for number in range(a.number + 1, after[0].number)):
             return predict(self.scene, a.state, s)
-        return self.bend(a.state, after[0].state, s)
+        return self.interpolate_gap(a.state, after[0].state, s)
 
     def left(self, known: list[KnownUpdate], k: int, back: int = 0) -> Offset:
         """What is left to go at update k, `back` before the one that is shown."""
@@ -70,7 +70,7 @@ class Playout:
         counts = z.smoothing_exp > 0 and a.tick < z.tick + (1 << z.smoothing_exp)
         return kept(smoothed(path, z, self.left(known, k - 1, back + 1), a.tick) if counts else path, a)
 
-    def bend(self, a: State, b: State, s: int) -> tuple[tuple, tuple]:
+    def interpolate_gap(self, a: State, b: State, s: int) -> tuple[tuple, tuple]:
         scene, whole = self.scene, b.tick - a.tick
         u = round_div((s - a.tick) << 30, whole)
         c, rate = cubic(u)

@@ -87,7 +87,7 @@ class Replica:
             return predict(self.scene, o.state, t)
         if o.body is None or o.body.state is not o.state or o.known != self.path.revision or t < o.body.tick:
             o.body, o.known = DrivenBody(self.scene, o.index, o.state), self.path.revision
-        return o.body.pose(t, self.path.place)
+        return o.body.pose(t, self.path.position)
 
     def pose(self, o: ReplicaObject, now: int) -> tuple[tuple, tuple]:
         now = max(now, o.begin)

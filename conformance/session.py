@@ -8,7 +8,7 @@ from typing import Callable, Iterator, Optional
 
 from conventions import Cursor, StreamError, fnv1a, require
 from datagram import (UP, DOWN, HANDSHAKE, PARTS, PACKET, JOIN, WELCOME, REFUSAL, LEAVE, ACK, CLOCK, BUTTONS, PIECE, STATE, HASH, FRAGMENT,
-                      PACKET_PART, REPORT, PACE, SEAT, BASELINES, BYE, TOO_LARGE, SILENCE, NO_SCENE, NO_TIMING, END_OF_TIME, CUT, SPARE,
+                      PACKET_PART, REPORT, TICK_MAPPING, SEAT, BASELINES, BYE, TOO_LARGE, SILENCE, NO_SCENE, NO_TIMING, END_OF_TIME, CUT, SPARE,
                       sealed, is_of_epoch, head, varint, part, reason_of, read_parts)
 from decoder import SceneDecoder
 from deformable_decoder import DeformableDecoder
@@ -19,7 +19,7 @@ from scene import THESIS, Declaration, read_declaration
 
 PREVIOUS = 0                                                # policies of baselines
 MOST_HELD, BYTES_HELD, LONGEST_HELD = 1024, 1 << 16, 2_000_000
-ACK_RIDES_ON = {UP: (BUTTONS, STATE), DOWN: (PIECE, PACE, SEAT)}   # an acknowledgement rides on these, due or not
+ACK_RIDES_ON = {UP: (BUTTONS, STATE), DOWN: (PIECE, TICK_MAPPING, SEAT)}   # an acknowledgement rides on these, due or not
 MOST_UNREPORTED = 32                                        # numbers that are accepted until an acknowledgement is due at once
 PIECE_SIZE, WINDOW, WINDOW_PER_PIECE, LARGEST_WINDOW = 1024, 64, 16, 1024
 FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 4
@@ -74,7 +74,7 @@ def largest_packet(scene: Declaration) -> int:
 
 # ---- Sections 4 to 6: one end of an epoch ---------------------------------------------------------------------------
 class Epoch:
-    direction, patience = UP, 10 * MS                       # of what it sends; until an acknowledgement is due
+    direction, ack_delay = UP, 10 * MS                       # of what it sends; until an acknowledgement is due
 
     def __init__(self, epoch: int, client: int, serial: int, size: int, digest: int, start: int):
         self.epoch, self.client, self.serial, self.start = epoch, client, serial, start
@@ -142,8 +142,8 @@ class Epoch:
             return self.decode(now, number - back, packet)
         elif kind == BASELINES and self.direction == UP:
             self.policy = elements[0]
-        elif kind == PACE and self.direction == UP:
-            self.take_pace(*elements)
+        elif kind == TICK_MAPPING and self.direction == UP:
+            self.take_mapping(*elements)
         else:
             self.take_received(kind, elements)
         return True
@@ -155,7 +155,7 @@ class Epoch:
             smoothed, variation = smoothed + trunc(sample - smoothed, 8), variation + trunc(abs(smoothed - sample) - variation, 4)
         self.round_trip = smoothed, variation
 
-    def answer(self) -> int:
+    def ack_timeout(self) -> int:
         return self.round_trip[0] + 4 * self.round_trip[1] + 25 * MS if self.round_trip else FIRST_ANSWER
 
     def take_acknowledged(self, now: int, newest: int, held: int, missing: int) -> None:
@@ -170,7 +170,7 @@ class Epoch:
         if self.direction == UP and self.path:              # which packets of the device take effect
             self.path.acknowledge(numbers)
 
-    def take_pace(self, begin: int, offset: int) -> None:
+    def take_mapping(self, begin: int, offset: int) -> None:
         if self.path:
             self.path.begin(begin, offset)
 
@@ -270,7 +270,7 @@ class Epoch:
 
     def report(self, now: int) -> bytes:
         """The playout delay, 0 as nothing is shown here, and whether a key packet is needed."""
-        is_stuck = any(now > at + max(500 * MS, 4 * self.answer()) for at, _ in self.held.values())
+        is_stuck = any(now > at + max(500 * MS, 4 * self.ack_timeout()) for at, _ in self.held.values())
         return part(REPORT, varint(0) + bytes([is_stuck]))
 
     def accept(self, now: int, number: int, parts: list[tuple], urgent: bool) -> None:
@@ -287,7 +287,7 @@ class Epoch:
 
     def wait_from(self, now: int) -> int:
         """When an acknowledgement of something ack-eliciting now is due."""
-        return now + self.patience
+        return now + self.ack_delay
 
     def acknowledgement(self, now: int) -> bytes:
         newest = max(self.accepted)
@@ -303,7 +303,7 @@ class Epoch:
 
     def next_send(self, wanted: int) -> int:
         """Section 9: an end sends little while nothing is acknowledged for long."""
-        if self.unanswered() is None or wanted <= self.progress_at + max(1000 * MS, 4 * self.answer()):
+        if self.unanswered() is None or wanted <= self.progress_at + max(1000 * MS, 4 * self.ack_timeout()):
             return wanted
         return max(wanted, self.last_sent + max(50 * MS, (max(self.last_sent, self.progress_at) - self.progress_at) // 1024))
 
@@ -430,7 +430,7 @@ class Client:
         if self.state == "joining" or self.rejoins:
             return self.retry_at if self.state != "closed" else float("inf")
         since = self.epoch.unanswered() if self.state in ("receiving", "live") else None
-        return float("inf") if since is None else since + max(400 * MS, 2 * self.epoch.answer())
+        return float("inf") if since is None else since + max(400 * MS, 2 * self.epoch.ack_timeout())
 
     def keep_alive_due(self) -> int:
         """When the next keep-alive goes: sections 3.1 and 10."""
@@ -459,7 +459,7 @@ class Client:
 
 
 # ---- Testee (README.md) ---------------------------------------------------------------------------------------------
-PATIENCE = 10 * MS
+ACK_DELAY = 10 * MS
 
 
 def sent_by(datagrams: list[bytes]) -> dict:
@@ -501,7 +501,7 @@ def lines(script: str) -> Iterator[dict]:
                 client.leave()
         except StreamError as e:
             error = e
-        sent = sent_by(list(client.poll(step["at"] + PATIENCE)))
+        sent = sent_by(list(client.poll(step["at"] + ACK_DELAY)))
         newest, held, missing = sent.get("acknowledges", (None, 0, None))
         if reported == (newest, missing):
             del sent["acknowledges"]                        # nothing new

@@ -19,7 +19,7 @@
 namespace tactus::conformance {
 namespace {
 
-constexpr std::uint64_t kPatience = 10'000;  // [us] after which an acknowledgement is due
+constexpr std::uint64_t kAckDelay = 10'000;  // [us] after which an acknowledgement is due
 
 /// What a client has sent, apart from when: acknowledgement, hashes, whole handshakes.
 struct Sent {
@@ -91,7 +91,7 @@ class Script {
  private:
   void answer(std::uint64_t now, const std::optional<Error>& error) {
     Sent sent;
-    while (const auto datagram = client_->poll_datagram(now + kPatience)) sent.add(*datagram);
+    while (const auto datagram = client_->poll_datagram(now + kAckDelay)) sent.add(*datagram);
     if (sent.acknowledgement && !is_new(*sent.acknowledgement)) sent.acknowledgement.reset();
     while (const auto event = client_->poll_event())
       if (event->kind == ClientEvent::Kind::closed) reason_ = event->reason;

@@ -7,7 +7,7 @@ import struct
 from typing import Iterator, Optional
 
 from conventions import Cursor, StreamError, fnv1a, require
-from datagram import (ACK, BUTTONS, BYE, CUT, DOWN, FULL, HANDSHAKE, JOIN, LEAVE, PACE, PACKET, PARTS, PIECE, PROTOCOL, REFUSAL, SILENCE,
+from datagram import (ACK, BUTTONS, BYE, CUT, DOWN, FULL, HANDSHAKE, JOIN, LEAVE, TICK_MAPPING, PACKET, PARTS, PIECE, PROTOCOL, REFUSAL, SILENCE,
                       SPARE, STATE, TOO_LARGE, UP, WELCOME, WRONG_VERSION, head, is_of_epoch, part, reason_of, sealed, varint)
 from decoder import SceneDecoder
 from device_path import DevicePath, device_scene
@@ -18,13 +18,13 @@ from session import FIRST_ANSWER, MS, PIECE_SIZE, WINDOW, Epoch
 LEAST_JOIN = 80                                             # bytes
 WELCOME_EVERY, UNVALIDATED, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
 MOST_FAULTS = 100                                           # datagrams
-DRIVEN_PATIENCE = 140 * MS
+DRIVEN_ACK_DELAY = 140 * MS
 ROLES = "observer", "participant"
 
 
 # ---- Section 6: the server's end of an epoch ------------------------------------------------------------------------
 class ServedEpoch(Epoch):
-    direction, patience = DOWN, 25 * MS
+    direction, ack_delay = DOWN, 25 * MS
     live = False
     buttons = (0, 0)                                        # tick, mask
     reached = -1                                            # tick of the device, in the simulation
@@ -55,7 +55,7 @@ class ServedEpoch(Epoch):
         self.eliciting_first = now if self.eliciting_first is None else self.eliciting_first
         well = not self.reported_changed and all(n in self.accepted for n in range(self.reported + 1, max(self.accepted) + 1))
         loss = sum(self.fates[-256:]) / max(128, len(self.fates[-256:]))
-        return self.eliciting_first + DRIVEN_PATIENCE if self.path and well and loss <= 0.01 else now + self.patience
+        return self.eliciting_first + DRIVEN_ACK_DELAY if self.path and well and loss <= 0.01 else now + self.ack_delay
 
     def acknowledgement(self, now: int) -> bytes:
         self.reported, self.eliciting_first, self.reported_changed = max(self.accepted), None, False
@@ -67,8 +67,8 @@ class ServedEpoch(Epoch):
         self.open -= there
         if self.round_trip is None:
             return
-        patience = self.round_trip[0] + max(4 * self.round_trip[1], 1000)
-        for n in sorted(n for n in self.open if n < newest and (newest - n > 64 or now - self.sent_at[n] > patience)):
+        timeout = self.round_trip[0] + max(4 * self.round_trip[1], 1000)
+        for n in sorted(n for n in self.open if n < newest and (newest - n > 64 or now - self.sent_at[n] > timeout)):
             self.open.discard(n)
             self.fates.append(True)
             self.in_flight.discard(self.carries.get(n, -1))
@@ -82,15 +82,15 @@ class ServedEpoch(Epoch):
             self.in_flight.discard(index)
             self.timeouts = 0
 
-    def answer(self) -> int:
+    def ack_timeout(self) -> int:
         return self.round_trip[0] + 4 * self.round_trip[1] + 10 * MS if self.round_trip else FIRST_ANSWER
 
     def lose_pieces(self, now: int) -> None:
         """Section 6: what was not acknowledged for long goes again."""
-        patience = self.answer() << self.timeouts
-        if not self.in_flight or not self.open or now < self.sent_at[min(self.open)] + patience:
+        timeout = self.ack_timeout() << self.timeouts
+        if not self.in_flight or not self.open or now < self.sent_at[min(self.open)] + timeout:
             return
-        for n in [n for n in self.open if self.sent_at[n] <= now - patience]:
+        for n in [n for n in self.open if self.sent_at[n] <= now - timeout]:
             self.open.discard(n)
             self.in_flight.discard(self.carries.get(n, -1))
         self.timeouts = min(self.timeouts + 1, 1 if self.round_trip else 6)
@@ -121,10 +121,10 @@ class ServedEpoch(Epoch):
         self.path.add(number, state)
         return True
 
-    def begin_pace(self, tick: int, offset: int) -> bytes:
+    def begin_mapping(self, tick: int, offset: int) -> bytes:
         """The part that signals it."""
         self.path.begin(tick, offset)
-        return part(PACE, varint(tick) + varint(2 * offset if offset >= 0 else -2 * offset - 1))
+        return part(TICK_MAPPING, varint(tick) + varint(2 * offset if offset >= 0 else -2 * offset - 1))
 
     def simulate(self, tick: int) -> None:
         device = self.path.device_tick(tick)
@@ -273,10 +273,10 @@ class Server:
         elif not free:
             self.refuse(peer, nonce, FULL)
         else:
-            place = free[0]
-            if self.closed.pop(place, None):                  # it need not be sent any more
+            slot = free[0]
+            if self.closed.pop(slot, None):                  # it need not be sent any more
                 self.outbox = [item for item in self.outbox if item[0] != peer]
-            c = self.connections[place] = Connection(peer, place, role, nonce, (state_limit, header_limit))
+            c = self.connections[slot] = Connection(peer, slot, role, nonce, (state_limit, header_limit))
             c.begin(self, next(self.epochs), now)
             self.outbox.append((peer, c.welcome()))
 
@@ -315,7 +315,7 @@ class Server:
 
 
 # ---- Testee (README.md) ---------------------------------------------------------------------------------------------
-PATIENCE = 25 * MS
+ACK_DELAY = 25 * MS
 
 
 def split_mix(state: int) -> Iterator[int]:
@@ -387,7 +387,7 @@ def lines(script: str) -> Iterator[dict]:
                 server.let_go(step["closes"], step["reason"])
         except StreamError as e:
             error = e
-        sent = listener.hear(list(server.poll(now + PATIENCE)))
+        sent = listener.hear(list(server.poll(now + ACK_DELAY)))
         answer: dict = {"line": number, "clients": [[c.peer, c.client, ROLES[c.role], c.state()] for c in server.there()]}
         if server.left:
             answer["left"] = [list(item) for item in server.left]

@@ -20,7 +20,7 @@
 namespace tactus::conformance {
 namespace {
 
-constexpr std::uint64_t kPatience = 25'000;  // [us] after which an acknowledgement is due
+constexpr std::uint64_t kAckDelay = 25'000;  // [us] after which an acknowledgement is due
 
 /// What the server sends to an address.
 struct Peer {
@@ -117,7 +117,7 @@ class ServerScript {
 
   void answer(std::uint64_t now, const std::optional<Error>& error) {
     Sent sent;
-    while (const auto datagram = server_->poll_datagram(now + kPatience)) hear(datagram->peer, datagram->bytes, sent);
+    while (const auto datagram = server_->poll_datagram(now + kAckDelay)) hear(datagram->peer, datagram->bytes, sent);
     out_ << R"({"line":)" << lines_++;
     write_clients();
     write_left();
@@ -177,7 +177,7 @@ class ServerScript {
       if (s.state != SessionState::live || s.role != Role::participant) continue;
       if (!list) list.emplace(out_, "devices");
       list->item() << '[' << i << ",\"" << hex(server_->device_hash(i), 16) << '"';
-      if (const auto device = server_->device(i, now + kPatience)) out_ << ',' << device->buttons;
+      if (const auto device = server_->device(i, now + kAckDelay)) out_ << ',' << device->buttons;
       out_ << ']';
     }
   }

@@ -235,8 +235,8 @@ class ShapesTest(unittest.TestCase):
         self.numbers = itertools.count(1)
         return Shapes(self.scene, self.scene.deformables[0], path)
 
-    def at(self, shapes: Shapes, tick: int, place: tuple) -> None:
-        position = tuple(round(c * shapes.scale) for c in place)
+    def at(self, shapes: Shapes, tick: int, point: tuple) -> None:
+        position = tuple(round(c * shapes.scale) for c in point)
         shapes.path.add(next(self.numbers), State(tick, position, (1 << 30, 0, 0, 0)))
 
     def top(self, shapes: Shapes, n: int) -> Optional[list]:

@@ -62,9 +62,9 @@ class RunnerTest(unittest.TestCase):
 
     def append(self, suffix: str, data: bytes) -> list[int]:
         with open(self.vectors / f"scene{suffix}", "ab") as file:
-            place = [file.tell(), len(data)]
+            extent = [file.tell(), len(data)]
             file.write(data)
-        return place
+        return extent
 
     def write_lists(self, cases: list[dict], of_list: dict = {}, of_manifest: dict = {}) -> None:
         content = json.dumps({**of_list, "cases": cases}).encode("ascii")
@@ -112,8 +112,8 @@ class RunnerTest(unittest.TestCase):
         testee = self.command(f"""
 import subprocess, sys
 reply = subprocess.run([sys.executable, {str(HERE / "decoder.py")!r}], stdin=sys.stdin, stdout=subprocess.PIPE)
-place = reply.stdout.rfind(b'"}}') - 1
-sys.stdout.write(reply.stdout[:place].decode() + chr(reply.stdout[place] ^ 1) + reply.stdout[place + 1:].decode())
+digit = reply.stdout.rfind(b'"}}') - 1
+sys.stdout.write(reply.stdout[:digit].decode() + chr(reply.stdout[digit] ^ 1) + reply.stdout[digit + 1:].decode())
 sys.exit(reply.returncode)""")
         self.expect(1, "0 passed, 3 failed, 0 skipped", "--testee", testee)
 
@@ -376,16 +376,16 @@ class DevicePathTest(unittest.TestCase):
         offset, acted = 12, []
         for tick in range(self.TICKS):
             if tick % 200 == 30:
-                self.send(tick, self.client, self.server.write(1000 * tick, [self.server.begin_pace(tick, offset)]))
+                self.send(tick, self.client, self.server.write(1000 * tick, [self.server.begin_mapping(tick, offset)]))
                 offset = self.rng.randrange(5, 40)
             self.step(tick, True)
             self.server.simulate(tick)
-            acted.append(self.server.path.place(tick))
+            acted.append(self.server.path.position(tick))
         for tick in range(self.TICKS, self.TICKS + 200):
             self.step(tick, False)
-        self.assertEqual([self.server.path.place(t) for t in range(self.TICKS)], acted, "the past has changed")
-        self.assertEqual([self.client.path.place(t) for t in range(self.TICKS)], acted)
-        self.assertEqual(acted[:31].count(None), 30, "a place before any pace")
+        self.assertEqual([self.server.path.position(t) for t in range(self.TICKS)], acted, "the past has changed")
+        self.assertEqual([self.client.path.position(t) for t in range(self.TICKS)], acted)
+        self.assertEqual(acted[:31].count(None), 30, "a position before any tick mapping")
         decoded = set(self.server.decoders.substreams[0].receiver.kept)
         self.assertTrue(decoded - set(self.server.path.states), "no packet came too late")
         self.assertGreater(len({self.server.path.device_tick(t + 1) - self.server.path.device_tick(t) for t in range(30, 1900)}), 2)

@@ -34,8 +34,8 @@ struct Capabilities {
   double nominal_force = 0;  ///< [N] that it can hold
   double peak_force = 0;     ///< [N]
   double rate = 0;           ///< [Hz] at which it has new samples
-  bool paces = false;        ///< read() waits for the device's own clock; otherwise it returns at once
-  /// Nobody here interprets what the device says: it has no place, and what it says is handed on by reports(). What that means (HID
+  bool has_clock = false;        ///< read() waits for the device's own clock; otherwise it returns at once
+  /// Nobody here interprets what the device says: it has no position, and what it says is handed on by reports(). What that means (HID
   /// 1.11, section 6.2.2).
   std::optional<std::vector<std::uint8_t>> report_descriptor{};
 };
@@ -51,7 +51,7 @@ struct Reading {
   DeviceSample sample{};
   Time taken = 0;  ///< when the device took it, as well as can be known
   State state = State::valid;
-  std::uint32_t lost = 0;  ///< samples since the last call that nobody can have any more; only of a device that paces
+  std::uint32_t lost = 0;  ///< samples since the last call that nobody can have any more; only of a device with a clock
 };
 
 /// A force that passed a ForceGuard: nothing else makes one, and a device takes no other.
@@ -70,7 +70,7 @@ class Device {
  public:
   virtual const Capabilities& capabilities() const noexcept = 0;
 
-  /// The newest sample. A device that paces waits for the next one, at most until `deadline`; a simulated one, or a recording, is as it
+  /// The newest sample. A device with a clock waits for the next one, at most until `deadline`; a simulated one, or a recording, is as it
   /// is at `deadline`.
   /// err  io R-DEV-4 it did not answer, or is gone; malformed R-DEV-5 it said what its protocol does not know. Both end its use.
   virtual Result<Reading> read(Time deadline) noexcept = 0;

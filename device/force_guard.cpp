@@ -37,7 +37,7 @@ Result<ForceGuard> ForceGuard::create(const Capabilities& capabilities, const Gu
 
 GuardedForce ForceGuard::stop() noexcept {
   written_ = {};
-  has_passed_ = has_place_ = fades_ = false;
+  has_passed_ = has_position_ = fades_ = false;
   before_ = actions_ = 0;
   return GuardedForce({});
 }
@@ -52,7 +52,7 @@ GuardedForce ForceGuard::pass(const ForceCommand& command, const Reading& readin
   const Time stale_from = command.time + limits_.fresh;
   if (now > stale_from) note(GuardAction::stale);
   if (is_there) observe(reading);
-  else has_place_ = false;
+  else has_position_ = false;
   const Vec3 before = written_;
   if (actions_ != 0) {
     written_ = fade(actions_ == 1u << static_cast<unsigned>(GuardAction::stale) ? stale_from : now, now);
@@ -78,11 +78,11 @@ Vec3 ForceGuard::fade(Time since, Time now) noexcept {
 
 /// The force written last acted along the path to this reading.
 void ForceGuard::observe(const Reading& reading) noexcept {
-  const Vec3& place = reading.sample.position;
-  moved_ = has_place_ ? place - place_ : Vec3{};
+  const Vec3& position = reading.sample.position;
+  moved_ = has_position_ ? position - position_ : Vec3{};
   energy_ += dot(written_, moved_);
-  place_ = place;
-  has_place_ = true;
+  position_ = position;
+  has_position_ = true;
 }
 
 /// A damper that takes back, if the device goes on moving as it did, all that it gave away: no harder than one that is stable itself.

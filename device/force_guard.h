@@ -84,8 +84,8 @@ class ForceGuard {
   bool fades_ = false;
   Time fade_begin_ = 0;
   Vec3 fade_from_{};
-  Vec3 place_{}, moved_{};  // [m] of the last valid reading, and since the one before
-  bool has_place_ = false;
+  Vec3 position_{}, moved_{};  // [m] of the last valid reading, and since the one before
+  bool has_position_ = false;
   double energy_ = 0;
   std::uint8_t actions_ = 0, before_ = 0;
   std::array<std::uint64_t, kGuardActions> counts_{};

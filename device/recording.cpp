@@ -45,7 +45,8 @@ tl::expected<std::vector<RecordedSample>, Diagnostic> read_samples(TraceReader& 
 }  // namespace
 
 tl::expected<Recording, Diagnostic> Recording::read(const std::string& path, const RecordingOptions& options) try {
-  if (!(options.pace > 0 && options.pace <= 1000)) return refuse(path, fail(Errc::invalid_argument, "R-API-4").value(), "pace");
+  if (!(options.playback_rate > 0 && options.playback_rate <= 1000))
+    return refuse(path, fail(Errc::invalid_argument, "R-API-4").value(), "playback_rate");
   auto reader = TraceReader::open(path, {});
   if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& info = reader->info();
@@ -63,7 +64,7 @@ Recording::Recording(TraceUser user, double rate, std::vector<RecordedSample> sa
     : user_(std::move(user)),
       rate_(rate),
       samples_(std::move(samples)),
-      ticks_per_ns_(1e-9 * rate * options.pace),
+      ticks_per_ns_(1e-9 * rate * options.playback_rate),
       loops_(options.loops) {
   low_ = high_ = begin();
   for (const RecordedSample& recorded : samples_) {

@@ -19,7 +19,7 @@ namespace tactus::device {
 
 struct RecordingOptions {
   std::string user{};  ///< empty: the first
-  double pace = 1;     ///< 0.5: half as fast, > 0
+  double playback_rate = 1;     ///< 0.5: half as fast, > 0
   bool loops = false;
 };
 
@@ -40,7 +40,7 @@ class Recording {
     bool is_over = false;   ///< the moment is its last sample
   };
 
-  /// err  R-TRC-n of reading; invalid_argument R-DEV-1: no such user; R-API-4: pace; limit_exceeded R-API-11: over 10^7 samples
+  /// err  R-TRC-n of reading; invalid_argument R-DEV-1: no such user; R-API-4: playback_rate; limit_exceeded R-API-11: over 10^7 samples
   static tl::expected<Recording, Diagnostic> read(const std::string& path, const RecordingOptions& options);
 
   /// in   since  the beginning; before it, the beginning
@@ -48,7 +48,7 @@ class Recording {
   Moment at(Time since) noexcept;
 
   const TraceUser& user() const noexcept { return user_; }
-  double rate() const noexcept { return rate_; }     ///< [Hz] of its samples, at pace 1
+  double rate() const noexcept { return rate_; }     ///< [Hz] of its samples, at playback_rate 1
   const Vec3& low() const noexcept { return low_; }  ///< [m] corners of what the hand reached
   const Vec3& high() const noexcept { return high_; }
   const Vec3& begin() const noexcept { return samples_.front().sample.position; }  ///< [m]

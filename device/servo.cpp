@@ -13,7 +13,7 @@ namespace tactus::device {
 namespace {
 
 constexpr double kUsualRate = 1000, kMostRate = 10'000;  // [Hz]
-constexpr Time kPatience = 15 * kMillisecond;            // of the thread that watches, which looks each kLook
+constexpr Time kTimeout = 15 * kMillisecond;            // of the thread that watches, which looks each kLook
 constexpr Time kLook = 4 * kMillisecond;
 
 }  // namespace
@@ -56,7 +56,7 @@ void Servo::watch(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     std::this_thread::sleep_for(std::chrono::nanoseconds(kLook));
     const Time now = clock_.now();  // first: this thread may be held up between the two
-    const bool is_late = now - exerted_.load(std::memory_order_acquire) > kPatience;
+    const bool is_late = now - exerted_.load(std::memory_order_acquire) > kTimeout;
     if (!is_late || !acts_.load(std::memory_order_acquire) || is_halted_.exchange(true)) continue;
     halted_.fetch_add(1, std::memory_order_relaxed);  // first: who feels the halt may ask
     device_.halt();
@@ -81,23 +81,23 @@ void Servo::wait() noexcept {
 }
 
 Result<ServoTick> Servo::next() noexcept {
-  const bool paces = device_.capabilities().paces;
+  const bool has_clock = device_.capabilities().has_clock;
   tick_.missed = 0;
-  if (!paces) wait();
-  const auto reading = device_.read(paces ? clock_.now() + kAnswerTime : tick_.due);
+  if (!has_clock) wait();
+  const auto reading = device_.read(has_clock ? clock_.now() + kAnswerTime : tick_.due);
   if (!reading) {
     release();
     return tl::unexpected(reading.error());
   }
   begun_ = clock_.now();
   tick_.reading = *reading;
-  if (paces) {
+  if (has_clock) {
     tick_.due = reading->taken;
     tick_.missed = has_begun_ ? reading->lost : 0;
     tick_.number += has_begun_ ? 1 + static_cast<std::int64_t>(tick_.missed) : 0;
   }
   has_begun_ = true;
-  tick_.lateness = paces ? std::max<Time>(begun_ - tick_.due, 0) : late_;
+  tick_.lateness = has_clock ? std::max<Time>(begun_ - tick_.due, 0) : late_;
   tick_.age = std::max<Time>(begun_ - reading->taken, 0);
   ++times_.ticks;
   times_.missed += tick_.missed;

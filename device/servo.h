@@ -8,7 +8,7 @@
 ///   }
 ///
 /// Ticks have absolute times on the monotonic clock. A tick that comes a whole period late or more leaves out the ticks between: they
-/// are counted, and the phase stays. A device that paces is waited for instead of our clock, so that nothing beats.
+/// are counted, and the phase stays. A device with a clock is waited for instead of our clock, so that nothing beats.
 ///
 /// A force is as old as the sample that it was computed from: a device that stays silent, or a caller that takes long, feels it fade.
 /// A second thread watches: when no force was exerted for 15 ms while one acts (the caller hangs), it halts the device.
@@ -35,7 +35,7 @@ struct ServoTick {
   std::int64_t number = 0;  ///< from 0; ticks left out have numbers, too
   Time due = 0;             ///< when it should begin
   Time lateness =
-      0;  ///< it began so long after the first tick that it replaces; of a device that paces: after the sample was taken
+      0;  ///< it began so long after the first tick that it replaces; of a device with a clock: after the sample was taken
   std::uint32_t missed = 0;  ///< ticks left out before this one
   Time age = 0;              ///< of the reading when the tick began
   Reading reading{};

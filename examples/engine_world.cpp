@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// An engine with 60 ticks per second, a left-handed world with y up, and objects that come and go. The scene declares slots, all parked at one
-/// place; what a slot shows is the engine's own affair. A body that leaves the world or breaks (NaN) is held where it was last, and the others go
+/// position; what a slot shows is the engine's own affair. A body that leaves the world or breaks (NaN) is held where it was last, and the others go
 /// on.
 #include <cmath>
 #include <cstdio>
@@ -88,14 +88,14 @@ int main() {
   const float s = std::sqrt(0.5f);
   for (const EngineAxes& e : {kUnity, kUnreal, kGodot}) {
     const Float3 up = to_engine(e, {0, 0, 1}), ahead = to_engine(e, {0, 1, 0});
-    const Float3 place{1, 2, 3};
+    const Float3 position{1, 2, 3};
     const auto unit = [&](float v) { return static_cast<float>(e.metres) * v; };
-    const EnginePose turned{place, {s * unit(up[0]), s * unit(up[1]), s * unit(up[2]), s}};
+    const EnginePose turned{position, {s * unit(up[0]), s * unit(up[1]), s * unit(up[2]), s}};
     const tactus::Vec3 face = tactus::rotate(pose_from_engine(e, turned).rotation, {0, 1, 0});
     const EnginePose again = pose_to_engine(e, pose_from_engine(e, turned));
     double off = std::abs(face.x + e.hand) + std::abs(face.y) + std::abs(face.z);  // to the right if left-handed
     for (std::size_t i = 0; i < 3; ++i)
-      off += std::abs(again.position[i] - place[i]) + std::abs(again.rotation[i] - turned.rotation[i]);
+      off += std::abs(again.position[i] - position[i]) + std::abs(again.rotation[i] - turned.rotation[i]);
     if (off > 1e-5 || std::abs(tactus::norm(from_engine(e, ahead)) - 1) > 1e-6) return std::printf("axes: %g off\n", off), 1;
   }
   std::printf("poses of three engines come back as they were\n");

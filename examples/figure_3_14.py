@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figure 3.14 of the thesis once more: what the traffic settings of its table 3.3 cost in packets, and what they do to the force.
 
-  for seed in 1 2 3 4 5; do tactus sim rotate-push-lift --pace 0.5 --tremor 0.4mm --seed $seed -o $seed.mcap; done
+  for seed in 1 2 3 4 5; do tactus sim rotate-push-lift --duration-scale 0.5 --tremor 0.4mm --seed $seed -o $seed.mcap; done
   figure_3_14.py fig3.14.svg 1.mcap 2.mcap 3.mcap 4.mcap 5.mcap
 
 It reads like a notebook: each part ends with a table or a figure. The thesis asked people for ratings. Their place is taken by the fraction
@@ -70,9 +70,9 @@ drawing, axes = plt.subplots(figsize=(7.5, 4.4), constrained_layout=True)
 for i, ((kind, part), (marker, line, colour)) in enumerate(zip(KINDS.items(), STYLES)):
     (x, y), (dx, dy) = mean[part].T, spread[part].T
     axes.errorbar(x, y, xerr=dx, yerr=dy, marker=marker, linestyle=line, color=colour, label=kind, capsize=2.5, elinewidth=0.8)
-    for (name, *_), place in zip(SETTINGS[part], zip(x, y)):
+    for (name, *_), point in zip(SETTINGS[part], zip(x, y)):
         side = -1 if i in (0, 2) else 1
-        axes.annotate(name, place, xytext=(side * 8, -side * 8), textcoords="offset points", ha="right" if side < 0 else "left", va="center")
+        axes.annotate(name, point, xytext=(side * 8, -side * 8), textcoords="offset points", ha="right" if side < 0 else "left", va="center")
 axes.set(xlabel="packets per second", ylabel="force error that people notice, % of the time")
 axes.margins(0.12)
 axes.invert_yaxis()

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Server and client over a link that loses one packet in ten and takes 20 ms each way. Packets build on states that the client has
 /// acknowledged, so no loss stops the stream, and what is not acknowledged is sent again. The client shows the tick of 50 ms ago: most
-/// packets are there by then, and it bends over the gaps that losses leave. If the client cannot decode a packet, advice() says whether
+/// packets are there by then, and it interpolates over the gaps that losses leave. If the client cannot decode a packet, advice() says whether
 /// to request a key packet.
 #include <cmath>
 #include <cstdio>
@@ -42,7 +42,7 @@ int main() {
   auto sender = tactus::Sender::create(*scene, options);
   auto receiver = tactus::Receiver::create(*scene, {.replica = {.interpolation = tactus::Interpolation::playout}, .limits = {}});
   if (!sender || !receiver) return 1;
-  sender->set_link({.answer = 2 * kDelay + 1, .loss = 0.1});  // as measured; here it is known
+  sender->set_link({.ack_timeout = 2 * kDelay + 1, .loss = 0.1});  // as measured; here it is known
 
   std::mt19937_64 random(1);
   std::deque<InFlight> link;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A session: a server with one pendulum and a client that looks on, as in an engine with a tick of 1 ms. Both are functions of bytes and
-/// time. The network between them takes 20 ms each way and loses one datagram in ten. The client bends over the gaps that losses leave;
+/// time. The network between them takes 20 ms each way and loses one datagram in ten. The client interpolates over the gaps that losses leave;
 /// the program prints how often what is shown was beyond the bound then, and how far. A longer playout delay makes that rarer.
 #include <algorithm>
 #include <cmath>

@@ -73,7 +73,7 @@ def points_of(pairs):
     """out   x and y, not a number where there is none"""
     points = [(float(x), math.nan if y is None else float(y)) for x, y in pairs]
     if not all(math.isfinite(x) for x, _ in points):
-        raise ValueError("a point has no place on the axis of x")
+        raise ValueError("a point has no position on the axis of x")
     return tuple(zip(*points)) or ((), ())
 
 

@@ -57,7 +57,7 @@ FIGURES = {
     "fig4.27": Figure(touch.touch("fig4.27"), "a hand on the membrane", needs_fem=True),
 }
 SAME = {"table3.3": "fig3.14"}
-USUAL = {"seeds": 5, "grip": "normal", "pace": 0.5, "tremor": 0.4e-3, "length_unit": 0.05}
+USUAL = {"seeds": 5, "grip": "normal", "duration_scale": 0.5, "tremor": 0.4e-3, "length_unit": 0.05}
 
 HEADING = """# The thesis, figure by figure
 
@@ -106,7 +106,7 @@ def set_up():
     made.add_argument("--length-unit", type=length, default=USUAL["length_unit"], metavar="LENGTH",
                       help="metres per virtual length unit of the thesis [0.05m]")
     made.add_argument("--grip", choices=("loose", "normal", "firm"), default=USUAL["grip"], help="of the hand on the device [normal]")
-    made.add_argument("--pace", type=factor, default=USUAL["pace"], metavar="FACTOR",
+    made.add_argument("--duration-scale", type=factor, default=USUAL["duration_scale"], metavar="FACTOR",
                       help="time of each movement, times the scene's, of the faster hand of fig3.10 and fig3.14 [0.5]")
     made.add_argument("--tremor", type=length, default=USUAL["tremor"], metavar="LENGTH", help="of the same hand, RMS per axis [0.4mm]")
     arguments.add_report_options(made, output_help="folder for figures (SVG, PNG and PDF) and tables (CSV)", force=True)

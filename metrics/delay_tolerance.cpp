@@ -44,21 +44,21 @@ double DelayTolerance::Touch::perceptible(std::size_t i) const noexcept {
 }
 
 std::optional<Vec3> DelayTolerance::Path::velocity(double tick) const noexcept {
-  if (places.size() < 2) return std::nullopt;
-  const auto& [from, a] = places.front();
-  const auto& [to, b] = places.back();
+  if (positions.size() < 2) return std::nullopt;
+  const auto& [from, a] = positions.front();
+  const auto& [to, b] = positions.back();
   return (1 / (tick * static_cast<double>(to - from))) * (b - a);
 }
 
 void DelayTolerance::add(const TraceFrame& frame, const Follows& follows) {
   for (std::uint32_t i = 0; i < frame.users.size(); ++i) {
     const UserSample& user = frame.users[i];
-    auto& places = users_[i].places;
-    const auto is_old = [&](const auto& place) { return static_cast<double>(frame.tick - place.first) * tick_ > kWindow; };
-    if (!places.empty() && frame.tick - places.back().first > 1 && is_old(places.back())) places.clear();  // a pause
-    const auto kept = std::ranges::find_if_not(places, is_old);
-    places.erase(places.begin(), kept == places.end() && kept != places.begin() ? kept - 1 : kept);
-    places.emplace_back(frame.tick, user.device.position);
+    auto& positions = users_[i].positions;
+    const auto is_old = [&](const auto& position) { return static_cast<double>(frame.tick - position.first) * tick_ > kWindow; };
+    if (!positions.empty() && frame.tick - positions.back().first > 1 && is_old(positions.back())) positions.clear();  // a pause
+    const auto kept = std::ranges::find_if_not(positions, is_old);
+    positions.erase(positions.begin(), kept == positions.end() && kept != positions.begin() ? kept - 1 : kept);
+    positions.emplace_back(frame.tick, user.device.position);
     const auto velocity = users_[i].velocity(tick_);
     if (!velocity) continue;
     const auto add_to = [&](const Pair& pair, double k) {

@@ -70,7 +70,7 @@ class DelayTolerance {
  private:
   /// Where a device was in the last ticks: its velocity is that of 8 ms, or of one tick where they are longer.
   struct Path {
-    std::vector<std::pair<std::int64_t, Vec3>> places;  // oldest first
+    std::vector<std::pair<std::int64_t, Vec3>> positions;  // oldest first
     std::optional<Vec3> velocity(double tick) const noexcept;
   };
 

@@ -15,7 +15,7 @@ class PastFrames {
   /// in   ticks  how many are kept
   explicit PastFrames(std::size_t ticks) : frames_(ticks) {}
 
-  /// Keep objects and users of a frame.   time O(objects + users); no allocation once all places were used
+  /// Keep objects and users of a frame.   time O(objects + users); no allocation once all slots were used
   void add(const TraceFrame& frame) {
     TraceFrame& kept = frames_[static_cast<std::size_t>(frame.tick) % frames_.size()];
     kept.tick = frame.tick;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kPeriod = 500'000;                     // [us]
 constexpr std::uint64_t kLongWait = 100'000;                   // [us] of packets for their turn
-constexpr std::uint32_t kPatience = 1, kLongestPatience = 64;  // periods
+constexpr std::uint32_t kLeastCalm = 1, kMostCalm = 64;  // periods
 
 // Of the rate of a line.
 constexpr std::uint64_t kLineEvery = 100'000;     // [us] from look to look
@@ -27,27 +27,27 @@ constexpr std::uint64_t kFirstWindow = 16, kFewest = 4, kMostInFlight = 800;
 constexpr std::uint64_t kMostMore = 16;       // 1/32 of the rate
 constexpr std::int64_t kPieceQueue = 5'000;   // [us] on the line, at which fewer go
 constexpr std::uint64_t kRecent = 1'000'000;  // [us]
-constexpr std::int64_t kAnswer = 10'000;      // [us] that an acknowledgement waits
+constexpr std::int64_t kAckDelay = 10'000;      // [us] that an acknowledgement waits
 
 }  // namespace
 
-// ==== line pace ====
+// ==== line pacer ====
 
-std::uint64_t LinePace::rate_gap() const noexcept {
+std::uint64_t LinePacer::rate_gap() const noexcept {
   const auto measured = static_cast<std::uint64_t>(gaps_.value().value_or(16 * kFirstGap));
   return std::max(measured, 16 * least_gap_);
 }
 
 /// [us] of the queue that is too much; a piece takes its time on a slow line.
-std::int64_t LinePace::excess() const noexcept {
+std::int64_t LinePacer::excess() const noexcept {
   return queue_ - kPieceQueue - variation_ / 2 - static_cast<std::int64_t>(rate_gap() / 16);
 }
 
 /// A queue goes in two round trips: one passes until its end is seen.
-std::uint64_t LinePace::gap() const noexcept {
+std::uint64_t LinePacer::gap() const noexcept {
   std::uint64_t gap = rate_gap();
   if (has_queue()) {
-    const std::int64_t time = 2 * (least_ + kAnswer);
+    const std::int64_t time = 2 * (least_ + kAckDelay);
     gap += gap * static_cast<std::uint64_t>(std::min(excess(), time / 4)) / static_cast<std::uint64_t>(time);
   } else if (gaps_.value()) {
     gap = gap * 32 / (32 + more_);
@@ -55,19 +55,19 @@ std::uint64_t LinePace::gap() const noexcept {
   return std::max(gap / 16, least_gap_);
 }
 
-std::uint64_t LinePace::window() const noexcept {
+std::uint64_t LinePacer::window() const noexcept {
   if (is_blind_) return kFewest;
   if (!gaps_.value()) return kFirstWindow;
-  return std::min(kFewest + static_cast<std::uint64_t>(least_ + kAnswer) / gap(), kMostInFlight);
+  return std::min(kFewest + static_cast<std::uint64_t>(least_ + kAckDelay) / gap(), kMostInFlight);
 }
 
-void LinePace::sent(std::uint64_t number, std::uint64_t now) noexcept {
+void LinePacer::sent(std::uint64_t number, std::uint64_t now) noexcept {
   if (first_number_ > 0) return;
   first_number_ = number;
   first_sent_ = static_cast<std::int64_t>(now);
 }
 
-void LinePace::feedback(const Feedback& report, const RoundTrip& trip, std::uint64_t now) noexcept {
+void LinePacer::feedback(const Feedback& report, const RoundTrip& trip, std::uint64_t now) noexcept {
   if (first_number_ == 0 || report.number < first_number_) return;
   is_blind_ = false;
   recent_.add(report.arrived - report.sent, now);
@@ -85,18 +85,18 @@ void LinePace::feedback(const Feedback& report, const RoundTrip& trip, std::uint
 }
 
 /// The acknowledgement has waited since the first arrived; unless they had come faster than they went: then it is the second.
-void LinePace::begin(const Mark& to, std::uint64_t now) noexcept {
-  const std::int64_t first = static_cast<std::int64_t>(now) - kAnswer;
+void LinePacer::begin(const Mark& to, std::uint64_t now) noexcept {
+  const std::int64_t first = static_cast<std::int64_t>(now) - kAckDelay;
   const bool is_second = 8 * (to.arrived - first) < 7 * (to.sent - first_sent_);
-  mark_ = Mark{first_number_, 1, first_sent_, is_second ? first - kAnswer : first};
+  mark_ = Mark{first_number_, 1, first_sent_, is_second ? first - kAckDelay : first};
 }
 
 /// A queue shows what the line carries; without one what is lost is lost by chance, if it is not much.
-void LinePace::measure(const Mark& to, std::uint64_t now) noexcept {
+void LinePacer::measure(const Mark& to, std::uint64_t now) noexcept {
   const std::int64_t sending = to.sent - mark_->sent, arriving = to.arrived - mark_->arrived;
   const std::int64_t span = std::max({sending, arriving, std::int64_t{1}});
   const std::uint64_t numbers = to.number - mark_->number, came = to.count - mark_->count;
-  if (gaps_.value() && span < kAnswer + 4 * variation_) return;  // what varies would count for more than the line
+  if (gaps_.value() && span < kAckDelay + 4 * variation_) return;  // what varies would count for more than the line
   mark_ = to;
   const std::uint64_t counts = has_queue() ? came : std::min(numbers, came + came / 8);
   if (counts == 0) return;
@@ -189,7 +189,7 @@ void Congestion::begin(std::uint64_t now) noexcept {
   steps_ = 0;
   since_ = looked_at_ = now;
   ticks_ = held_ = waits_begun_ = shapes_ = left_out_ = calm_ = 0;
-  patience_ = kPatience;
+  calm_needed_ = kLeastCalm;
   was_held_ = answered_ = waits_ = narrowed_ = false;
 }
 
@@ -209,11 +209,11 @@ bool Congestion::step(Period period) noexcept {
   if (period == Period::unknown) return false;
   calm_ = period == Period::calm ? calm_ + 1 : 0;
   if (period == Period::congested) {
-    if (narrowed_) patience_ = std::min(2 * patience_, kLongestPatience);
+    if (narrowed_) calm_needed_ = std::min(2 * calm_needed_, kMostCalm);
     narrowed_ = false;
     steps_ = std::min(steps_ + 1, most_steps_);
-  } else if (calm_ >= patience_) {
-    if (narrowed_) patience_ = kPatience;  // the last one was not too early
+  } else if (calm_ >= calm_needed_) {
+    if (narrowed_) calm_needed_ = kLeastCalm;  // the last one was not too early
     narrowed_ = steps_ > 0;
     steps_ -= steps_ > 0 ? 1 : 0;
     calm_ = 0;

@@ -54,13 +54,13 @@ class TokenBucket {
   std::uint64_t filled_at_ = 0;
 };
 
-// ==== line pace ====
+// ==== line pacer ====
 // How fast pieces of a declaration go: as fast as the line brings them, without a long queue on it. spec/70-session.md section 6.
 
-class LinePace {
+class LinePacer {
  public:
   /// in   least_gap  [us] from piece to piece at the rate that the user states
-  explicit LinePace(std::uint64_t least_gap) noexcept : least_gap_(std::max(least_gap, kLeastGap)) {}
+  explicit LinePacer(std::uint64_t least_gap) noexcept : least_gap_(std::max(least_gap, kLeastGap)) {}
   static constexpr std::uint64_t kLeastGap = 80;  ///< [us]: 100 Mbit/s
 
   std::uint64_t window() const noexcept;                        ///< pieces that may be in flight
@@ -176,7 +176,7 @@ class Congestion {
   std::uint64_t since_ = 0, looked_at_ = 0;                                           // [us] of the period, of the last tick
   std::uint32_t ticks_ = 0, held_ = 0, waits_begun_ = 0, shapes_ = 0, left_out_ = 0;  // of the period
   bool was_held_ = false, answered_ = false, waits_ = false;
-  std::uint32_t calm_ = 0, patience_ = 1;  // periods: so far, before a step narrower
+  std::uint32_t calm_ = 0, calm_needed_ = 1;  // periods: so far, before a step narrower
   bool narrowed_ = false;                  // by the last step, and nothing speaks against it so far
   BoundScaling so_far_;
 };

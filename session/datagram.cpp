@@ -14,10 +14,10 @@ constexpr std::uint16_t kHandshake = 0, kParts = 1, kPacket = 2;
 // Kinds of handshakes.
 constexpr std::uint16_t kJoin = 0, kWelcome = 1, kRefusal = 2, kLeave = 3, kFirstUnknownKind = 4;
 // Types of parts.
-constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPace = 3, kPiece = 4, kReport = 4, kState = 5, kSeat = 5,
+constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kTickMapping = 3, kPiece = 4, kReport = 4, kState = 5, kSeat = 5,
                        kHash = 6, kBaselines = 6, kFragment = 7,
                        kFirstUnknown =
-                           9;  // up 3 buttons, 4 report, 5 state, 6 hash; down 3 pace, 4 piece, 5 seat, 6 baselines; 8: packet
+                           9;  // up 3 buttons, 4 report, 5 state, 6 hash; down 3 tick mapping, 4 piece, 5 seat, 6 baselines; 8: packet
 
 constexpr std::uint32_t kMagic = 0x53544354;  // "TCTS"
 constexpr std::uint8_t kVersion = 1;
@@ -33,8 +33,8 @@ bool kind_comes(std::uint16_t kind, Direction direction) noexcept {
 }
 bool part_comes(std::uint8_t type, Direction direction) noexcept { return type != kClock || direction == Direction::down; }
 
-bool is_pace(const PacePart& pace) noexcept {
-  return pace.from < kEndOfTicks && pace.offset >= -kFarthest && pace.offset <= kFarthest;
+bool is_tick_mapping(const TickMappingPart& mapping) noexcept {
+  return mapping.from < kEndOfTicks && mapping.offset >= -kFarthest && mapping.offset <= kFarthest;
 }
 
 /// CRC-32 of epoch, direction and body.
@@ -165,7 +165,7 @@ void put(Put&, const Numbered&) noexcept {}
 std::size_t size_of(const Acknowledgement& a) noexcept { return 4 + varint_size(a.missing); }
 std::size_t size_of(const ClockPart& c) noexcept { return varint_size(c.time); }
 std::size_t size_of(const ButtonsPart&) noexcept { return 8; }
-std::size_t size_of(const PacePart& p) noexcept {
+std::size_t size_of(const TickMappingPart& p) noexcept {
   return varint_size(static_cast<std::uint64_t>(p.from)) + varint_size(zigzag(p.offset));
 }
 std::size_t size_of(const PiecePart& p) noexcept { return varint_size(p.index) + p.bytes.size(); }
@@ -182,7 +182,7 @@ std::size_t size_of(const PacketPart& p) noexcept { return varint_size(p.back) +
 void put(Put& to, const Acknowledgement& a) noexcept { to.integer(a.newest, 2).integer(a.held, 2).varint(a.missing); }
 void put(Put& to, const ClockPart& c) noexcept { to.varint(c.time); }
 void put(Put& to, const ButtonsPart& b) noexcept { to.integer(b.tick, 4).integer(b.mask, 4); }
-void put(Put& to, const PacePart& p) noexcept { to.varint(static_cast<std::uint64_t>(p.from)).varint(zigzag(p.offset)); }
+void put(Put& to, const TickMappingPart& p) noexcept { to.varint(static_cast<std::uint64_t>(p.from)).varint(zigzag(p.offset)); }
 void put(Put& to, const PiecePart& p) noexcept { to.varint(p.index).bytes(p.bytes); }
 void put(Put& to, const StatePart& s) noexcept { to.integer(s.live, 1); }
 void put(Put& to, const ReportPart& r) noexcept {
@@ -200,7 +200,7 @@ void put(Put& to, const PacketPart& p) noexcept { to.varint(p.back).bytes(p.byte
 
 /// Of a part on the wire.
 std::uint8_t type_of(const Part& part) noexcept {
-  if (std::holds_alternative<PacePart>(part)) return kPace;
+  if (std::holds_alternative<TickMappingPart>(part)) return kTickMapping;
   if (std::holds_alternative<ReportPart>(part)) return kReport;
   if (std::holds_alternative<BaselinesPart>(part)) return kBaselines;
   return std::holds_alternative<SeatPart>(part) ? kSeat : static_cast<std::uint8_t>(part.index() + 1);
@@ -208,9 +208,9 @@ std::uint8_t type_of(const Part& part) noexcept {
 
 /// The elements of a part; the reader says whether they were all there.
 Part read_part(std::uint8_t type, Direction direction, ByteReader& r) noexcept {
-  if (type == kPace && direction == Direction::down) {
+  if (type == kTickMapping && direction == Direction::down) {
     const auto from = static_cast<std::int64_t>(std::min<std::uint64_t>(r.varint(), kEndOfTicks));
-    return PacePart{from, unzigzag(r.varint())};
+    return TickMappingPart{from, unzigzag(r.varint())};
   }
   if (type == kReport && direction == Direction::up) {
     ReportPart report;
@@ -274,17 +274,17 @@ Result<std::optional<Part>> PartReader::next() noexcept {
     return std::optional<Part>(PacketPart{0, reader_.bytes(reader_.remaining())});
   }
   while (reader_.remaining() > 0) {
-    const std::uint64_t place = reader_.bit_offset();
+    const std::uint64_t position = reader_.bit_offset();
     const std::uint8_t type = reader_.u8();
     const ByteReader part = reader_.sub(reader_.varint());
     if (reader_.overrun()) return fail(Errc::truncated, "R-SES-3", reader_.bit_offset());
     if (reader_.overlong()) return fail(Errc::malformed, "R-SES-3", reader_.bit_offset());
-    if (type < last_ || type == 0) return fail(Errc::malformed, "R-SES-5", place);
+    if (type < last_ || type == 0) return fail(Errc::malformed, "R-SES-5", position);
     last_ = type;
     ++parts_;
     if (type >= kFirstSkipped) continue;
-    if (type >= kFirstUnknown || !part_comes(type, direction_)) return fail(Errc::malformed, "R-SES-5", place);
-    if (type >= kFragment && fragment_) return fail(Errc::malformed, "R-SES-5", place);
+    if (type >= kFirstUnknown || !part_comes(type, direction_)) return fail(Errc::malformed, "R-SES-5", position);
+    if (type >= kFragment && fragment_) return fail(Errc::malformed, "R-SES-5", position);
     fragment_ = type == kFragment;
     return read(type, part);
   }
@@ -299,7 +299,7 @@ Result<std::optional<Part>> PartReader::read(std::uint8_t type, ByteReader part)
   const auto* clock = std::get_if<ClockPart>(&out);
   if ((state != nullptr && state->live > 1) || (clock != nullptr && clock->time >= kEndOfTime))
     return fail(Errc::malformed, "R-SES-3", part.bit_offset());
-  if (const auto* pace = std::get_if<PacePart>(&out); pace != nullptr && !is_pace(*pace))
+  if (const auto* mapping = std::get_if<TickMappingPart>(&out); mapping != nullptr && !is_tick_mapping(*mapping))
     return fail(Errc::malformed, "R-SES-3", part.bit_offset());
   const auto* report = std::get_if<ReportPart>(&out);
   const auto* baselines = std::get_if<BaselinesPart>(&out);

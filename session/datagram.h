@@ -76,7 +76,7 @@ struct ButtonsPart {
 };
 
 /// How the device's ticks follow those of the server. spec/65-signal.md section 4
-struct PacePart {
+struct TickMappingPart {
   std::int64_t from = 0;    ///< tick of the server, 0 to 2^32 - 1
   std::int64_t offset = 0;  ///< from then on the device's tick is the server's less this; within +-2^33
 };
@@ -128,10 +128,10 @@ struct PacketPart {
   std::span<const std::uint8_t> bytes;
 };
 
-/// In the order of their types, 1..8; but PacePart, ReportPart, SeatPart and BaselinesPart have those of ButtonsPart, PiecePart, StatePart
+/// In the order of their types, 1..8; but TickMappingPart, ReportPart, SeatPart and BaselinesPart have those of ButtonsPart, PiecePart, StatePart
 /// and HashPart, in the other direction.
 using Part = std::variant<Acknowledgement, ClockPart, ButtonsPart, PiecePart, StatePart, HashPart, FragmentPart, PacketPart,
-                          PacePart, ReportPart, SeatPart, BaselinesPart>;
+                          TickMappingPart, ReportPart, SeatPart, BaselinesPart>;
 
 /// Parts one after the other. Those for later versions are skipped.
 class PartReader {

@@ -24,21 +24,21 @@ SenderOptions device_sender_options(const DeviceCoding& coding) noexcept {
 /// noise of its sensor.
 Vec3 DeviceTruth::slope() const noexcept {
   const std::size_t kept = std::min(count_, kSamples);
-  const auto place = [&](std::size_t back) -> const Place& { return places_[(count_ - 1 - back) % kSamples]; };
-  const auto is_recent = [&](const Place& p) { return (place(0).tick - p.tick) * 1000 < std::int64_t{8} * tick_rate_; };
+  const auto back_by = [&](std::size_t back) -> const TimedPosition& { return positions_[(count_ - 1 - back) % kSamples]; };
+  const auto is_recent = [&](const TimedPosition& p) { return (back_by(0).tick - p.tick) * 1000 < std::int64_t{8} * tick_rate_; };
   std::size_t count = std::min<std::size_t>(kept, 3);
-  while (count < kept && is_recent(place(count))) ++count;
+  while (count < kept && is_recent(back_by(count))) ++count;
   if (count < 2) return {};
   double mean = 0, square = 0;
   Vec3 centre;
   for (std::size_t i = 0; i < count; ++i) {
-    mean += static_cast<double>(place(i).tick - place(0).tick) / static_cast<double>(count);
-    centre = centre + (1.0 / static_cast<double>(count)) * place(i).position;
+    mean += static_cast<double>(back_by(i).tick - back_by(0).tick) / static_cast<double>(count);
+    centre = centre + (1.0 / static_cast<double>(count)) * back_by(i).position;
   }
   Vec3 sum;
   for (std::size_t i = 0; i < count; ++i) {
-    const double t = static_cast<double>(place(i).tick - place(0).tick) - mean;
-    sum = sum + t * (place(i).position - centre);
+    const double t = static_cast<double>(back_by(i).tick - back_by(0).tick) - mean;
+    sum = sum + t * (back_by(i).position - centre);
     square += t * t;
   }
   return square > 0 ? (1 / square) * sum : Vec3{};
@@ -49,7 +49,7 @@ Truth DeviceTruth::of(std::int64_t tick, const DeviceSample& sample, const std::
   if (senses_velocity_) {
     sample_.velocity = sample.velocity;
   } else {
-    if (is_finite(sample.position)) places_[count_++ % kSamples] = {tick, sample.position};  // else only this sample is refused
+    if (is_finite(sample.position)) positions_[count_++ % kSamples] = {tick, sample.position};  // else only this sample is refused
     sample_.velocity = static_cast<double>(tick_rate_) * slope();
   }
   // The error of the device is that of the other end of the spring: the force and its threshold are the same.

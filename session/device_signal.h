@@ -45,7 +45,7 @@ class DeviceTruth {
 
  private:
   static constexpr std::size_t kSamples = 32;  // at most, from which a velocity is taken
-  struct Place {
+  struct TimedPosition {
     std::int64_t tick = 0;
     Vec3 position;
   };
@@ -53,7 +53,7 @@ class DeviceTruth {
 
   std::uint32_t tick_rate_;
   bool senses_velocity_;
-  std::array<Place, kSamples> places_{};  // a ring
+  std::array<TimedPosition, kSamples> positions_{};  // a ring
   std::size_t count_ = 0;
   RigidSample sample_;
   Contact contact_;

@@ -24,7 +24,7 @@ constexpr std::uint64_t kLatestRigid = 400'000;    // [us] the same of rigid obj
 constexpr std::uint64_t kPieceReorder = 16;        // numbers by which pieces may come out of order
 constexpr std::uint64_t kBelated = 20'000;         // [us] a packet that no other waits for has a use after its tick was shown
 constexpr std::int64_t kLongTrip = 80'000;         // [us] from which on there is no time for a second round of copies
-constexpr std::uint64_t kFirstPatience = 250'000;  // [us] while no round trip is known
+constexpr std::uint64_t kInitialAckTimeout = 250'000;  // [us] while no round trip is known
 
 std::size_t largest_packet(const Scene& scene) {
   std::size_t out = scene.moving().empty() ? 0 : max_rigid_packet(scene);
@@ -85,23 +85,23 @@ Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
   return false;
 }
 
-std::uint64_t Exchange::patience() const noexcept {
-  if (!sent_.round_trip()) return kFirstPatience;
+std::uint64_t Exchange::ack_timeout() const noexcept {
+  if (!sent_.round_trip()) return kInitialAckTimeout;
   const RoundTrip& trip = *sent_.round_trip();
-  const std::uint64_t held = direction_ == Direction::down ? kUpPatience : path ? kDrivenPatience : kDownPatience;
+  const std::uint64_t held = direction_ == Direction::down ? kUpAckDelay : path ? kDrivenAckDelay : kDownAckDelay;
   return static_cast<std::uint64_t>(trip.smoothed + 4 * trip.variation) + held;
 }
 
-ReceivedNumbers::Patience Exchange::own_patience() const noexcept {
-  if (direction_ == Direction::up) return {kUpPatience, kUpPatience};
-  return {kDownPatience, path && sent_.loss() <= kSomeLoss ? kDrivenPatience : kDownPatience};
+ReceivedNumbers::AckDelay Exchange::own_ack_delay() const noexcept {
+  if (direction_ == Direction::up) return {kUpAckDelay, kUpAckDelay};
+  return {kDownAckDelay, path && sent_.loss() <= kSomeLoss ? kDrivenAckDelay : kDownAckDelay};
 }
 
 void Exchange::report_link() noexcept {
   if (!sender || !sent_.round_trip()) return;
   const std::int64_t tick_rate = sender->scene()->tick_rate;
-  const auto answer = (static_cast<std::int64_t>(patience()) * tick_rate + 999'999) / 1'000'000;
-  sender->set_link({.answer = std::max<std::int64_t>(1, answer),
+  const auto timeout = (static_cast<std::int64_t>(ack_timeout()) * tick_rate + 999'999) / 1'000'000;
+  sender->set_link({.ack_timeout = std::max<std::int64_t>(1, timeout),
                     .loss = std::ldexp(sent_.loss(), -16),
                     .copies = rigid_comes_in_time(),
                     .waits = waits_});
@@ -118,7 +118,7 @@ Result<void> Exchange::acknowledged(const Acknowledgement& ack, Reading& reading
     if (slot.number != number) return;
     if (pieces && slot.piece > 0) {
       pieces->arrived(slot.piece - 1);
-      pieces->pace.arrived();
+      pieces->pacer.arrived();
       timeouts_ = 0;
     }
     if (!sender) return;
@@ -144,13 +144,13 @@ Result<void> Exchange::acknowledged(const Acknowledgement& ack, Reading& reading
     path->settle(sent_.highest_acknowledged(), [this](std::uint64_t number) { return sent_.has_arrived(number); });
   reading.heard.round_trip = sent_.sample();
   if (sent_.sample()) report_link();
-  if (sent_.sample() && pieces) pace_pieces(ack, reading.now);
+  if (sent_.sample() && pieces) update_pacer(ack, reading.now);
   return {};
 }
 
-void Exchange::pace_pieces(const Acknowledgement& ack, std::uint64_t now) noexcept {
+void Exchange::update_pacer(const Acknowledgement& ack, std::uint64_t now) noexcept {
   const std::int64_t arrived = static_cast<std::int64_t>(now) - std::int64_t{16} * ack.held;
-  pieces->pace.feedback({.number = sent_.highest_acknowledged(),
+  pieces->pacer.feedback({.number = sent_.highest_acknowledged(),
                      .newest_sent = sent_.newest(),
                      .sent = arrived - *sent_.sample(),
                      .arrived = arrived},
@@ -247,7 +247,7 @@ Result<void> Exchange::take(const FragmentPart& fragment, Reading& reading) noex
 
 void Exchange::finish(const Reading& reading) noexcept {
   if (!reading.complete) return;
-  received_.accept(reading.heard.number, reading.now, reading.ack_timing, own_patience());
+  received_.accept(reading.heard.number, reading.now, reading.ack_timing, own_ack_delay());
   if (receiver) receiver->skip_number(reading.heard.number);
 }
 
@@ -258,24 +258,24 @@ bool Exchange::add_piece(DatagramWriter& writer, std::uint64_t number, std::uint
   if (!writer.add(PiecePart{index, pieces->bytes(index)})) return false;
   slots_[number % slots_.size()].piece = static_cast<std::uint32_t>(index + 1);
   pieces->sent(index);
-  pieces->pace.sent(number, now);
+  pieces->pacer.sent(number, now);
   return true;
 }
 
 std::optional<std::uint64_t> Exchange::pieces_due() const noexcept {
   if (!pieces || pieces->in_flight() == 0) return std::nullopt;
   const auto oldest = sent_.oldest();
-  return oldest ? std::optional(*oldest + (patience() << timeouts_)) : std::nullopt;
+  return oldest ? std::optional(*oldest + (ack_timeout() << timeouts_)) : std::nullopt;
 }
 
 void Exchange::expire_pieces(std::uint64_t now) noexcept {
   const auto due = pieces_due();
   if (!due || now < *due) return;
-  sent_.expire(now - (patience() << timeouts_), [this](std::uint64_t number) {
+  sent_.expire(now - (ack_timeout() << timeouts_), [this](std::uint64_t number) {
     const Slot& slot = slots_[number % slots_.size()];
     if (slot.number == number && slot.piece > 0) pieces->lost(slot.piece - 1);
   });
-  pieces->pace.timed_out();
+  pieces->pacer.timed_out();
   timeouts_ = std::min(timeouts_ + 1, sent_.round_trip() ? 1u : 6u);
 }
 
@@ -307,12 +307,12 @@ void Exchange::skip_number(std::uint64_t now) noexcept {
 
 /// The layers of a mesh build on each other: once one is lost, the other end refuses the rest, and acknowledges nothing that would show it.
 bool Exchange::misses_layers(std::uint64_t now) const noexcept {
-  return layered_ > sent_.highest_acknowledged() && now > std::max(progress_at_, key_wanted_at_) + 2 * patience();
+  return layered_ > sent_.highest_acknowledged() && now > std::max(progress_at_, key_wanted_at_) + 2 * ack_timeout();
 }
 
 /// Nothing was acknowledged for long.
 bool Exchange::is_cut_off(std::uint64_t now) const noexcept {
-  return eliciting_ > sent_.highest_acknowledged() && now > progress_at_ + std::max(kSilence, 4 * patience());
+  return eliciting_ > sent_.highest_acknowledged() && now > progress_at_ + std::max(kSilence, 4 * ack_timeout());
 }
 
 std::uint64_t Exchange::next_send(std::uint64_t wanted) const noexcept {
@@ -374,7 +374,7 @@ bool Exchange::add_fragment(const Packet& packet, std::uint64_t number, std::uin
 
 /// A copy that no packet waits for.
 bool Exchange::rigid_comes_in_time() const noexcept {
-  return !repairs_ && fixed_playout_ && sent_.round_trip() && patience() <= playout_;
+  return !repairs_ && fixed_playout_ && sent_.round_trip() && ack_timeout() <= playout_;
 }
 
 bool Exchange::may_copy(std::uint64_t substream) const noexcept {
@@ -400,7 +400,7 @@ bool Exchange::shapes_come_in_time() const noexcept {
 /// wait for one that is missing; but after an outage a key packet is there sooner than all of them.
 Resends::Latest Exchange::latest() const noexcept {
   const auto one_way = static_cast<std::uint64_t>(sent_.round_trip()->least / 2);
-  return {.rigid = repairs_ ? std::max({kLatestRigid, 4 * patience(), 2 * playout_}) : one_way + playout_ + kBelated,
+  return {.rigid = repairs_ ? std::max({kLatestRigid, 4 * ack_timeout(), 2 * playout_}) : one_way + playout_ + kBelated,
           .shape = shapes_come_in_time() ? std::max(kLatestShape, playout_) : 0,
           .one_way = one_way};
 }
@@ -426,7 +426,7 @@ const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
 /// [us] when the newest ack-eliciting datagram counts as lost: none after it would show it.
 std::optional<std::uint64_t> Exchange::tail_due() const noexcept {
   if (!copies_rigid() || !sent_.round_trip() || eliciting_ <= sent_.highest_acknowledged()) return std::nullopt;
-  return std::max(eliciting_at_, tail_at_) + patience();
+  return std::max(eliciting_at_, tail_at_) + ack_timeout();
 }
 
 void Exchange::watch_tail(std::uint64_t now) noexcept {
@@ -437,7 +437,7 @@ void Exchange::watch_tail(std::uint64_t now) noexcept {
 }
 
 void Exchange::want_key(std::uint64_t now) noexcept {
-  if (now >= chain_at_ + patience()) wants_chain_ = true;
+  if (now >= chain_at_ + ack_timeout()) wants_chain_ = true;
 }
 
 void Exchange::begin_chain(std::uint64_t now) noexcept {

@@ -23,7 +23,7 @@ namespace tactus {
 
 inline constexpr std::uint64_t kHashEvery = 64;  ///< packets with a number that this divides: clients report the hash of the state
 /// [us] of acknowledgements in these directions; of a device whose path both ends know, while they report nothing that is missing
-inline constexpr std::uint64_t kUpPatience = 10'000, kDownPatience = 25'000, kDrivenPatience = 140'000;
+inline constexpr std::uint64_t kUpAckDelay = 10'000, kDownAckDelay = 25'000, kDrivenAckDelay = 140'000;
 
 /// pre  `now` [us] never decreases.   Only receive_with() allocates.
 class Exchange {
@@ -128,7 +128,7 @@ class Exchange {
   /// On what packets of rigid objects that come build: numbers without one are then not missing.
   void expect(bool repaired) noexcept { repaired_ = repaired; }
   bool is_repaired() const noexcept { return repaired_; }
-  std::uint64_t patience() const noexcept;  ///< [us] after which an acknowledgement should have come
+  std::uint64_t ack_timeout() const noexcept;  ///< [us] after which an acknowledgement should have come
   const Traffic& traffic() const noexcept { return traffic_; }
 
  private:
@@ -158,7 +158,7 @@ class Exchange {
   Result<std::uint64_t> receive(std::uint64_t now, const Numbered& datagram) noexcept;
   Result<bool> handle(const Part& part, Reading& reading) noexcept;
   Result<void> acknowledged(const Acknowledgement& ack, Reading& reading) noexcept;
-  void pace_pieces(const Acknowledgement& ack, std::uint64_t now) noexcept;
+  void update_pacer(const Acknowledgement& ack, std::uint64_t now) noexcept;
   Result<void> take(const FragmentPart& fragment, Reading& reading) noexcept;
   bool decode(std::uint64_t number, std::span<const std::uint8_t> packet, Reading& reading) noexcept;
   bool hold(std::uint64_t number, std::span<const std::uint8_t> packet, const Error& error, std::uint64_t now) noexcept;
@@ -167,7 +167,7 @@ class Exchange {
   void accept(std::uint64_t number, const Reading& reading) noexcept;
   void finish(const Reading& reading) noexcept;
   void report_link() noexcept;
-  ReceivedNumbers::Patience own_patience() const noexcept;
+  ReceivedNumbers::AckDelay own_ack_delay() const noexcept;
 
   bool is_acknowledgement_due(std::uint64_t now) const noexcept { return received_.due() && *received_.due() <= now; }
   std::optional<std::uint64_t> begin(std::uint64_t now, bool wanted) noexcept;

@@ -24,9 +24,9 @@ Fragments::Packet* Fragments::find(std::uint64_t number, std::uint64_t substream
   return nullptr;
 }
 
-/// Where the fragment belongs; null: nowhere, as all places hold newer packets. So one that was dropped never comes back: fragments of it
+/// Where the fragment belongs; null: nowhere, as all slots hold newer packets. So one that was dropped never comes back: fragments of it
 /// that were acknowledged are gone.
-Fragments::Packet* Fragments::place_for(std::uint64_t number, const FragmentPart& fragment) noexcept {
+Fragments::Packet* Fragments::slot_for(std::uint64_t number, const FragmentPart& fragment) noexcept {
   if (Packet* const packet = find(number, fragment.substream)) return packet;
   const auto age = [](const Packet& packet) { return std::pair(packet.number, packet.substream); };
   Packet& oldest = *std::ranges::min_element(packets_, {}, age);
@@ -47,7 +47,7 @@ Result<Fragments::Taken> Fragments::take(std::uint64_t datagram, const FragmentP
                      fragment.bytes.size() <= kFragmentSize && (is_last || fragment.bytes.size() == kFragmentSize) &&
                      fragment.index * kFragmentSize + fragment.bytes.size() <= largest_;
   if (!sound) return fail(Errc::invalid, "R-SES-7");
-  Packet* packet = place_for(datagram - fragment.back, fragment);
+  Packet* packet = slot_for(datagram - fragment.back, fragment);
   if (packet == nullptr) return Taken{};
   const auto index = static_cast<std::size_t>(fragment.index);
   if (packet->count != fragment.count) return fail(Errc::invalid, "R-SES-7");
@@ -65,7 +65,7 @@ void Fragments::decoded(const Complete& packet) noexcept { find(packet.number, p
 // ==== pieces ====
 
 std::optional<std::uint64_t> PieceSender::next() const noexcept {
-  if (count_ >= pace.window()) return std::nullopt;
+  if (count_ >= pacer.window()) return std::nullopt;
   for (std::uint64_t index = front_; index < next_; index = (index | 63) + 1) {
     const std::uint64_t lost = ~(arrived_.word(index) | in_flight_.word(index)) >> index % 64;
     if (lost == 0) continue;
@@ -138,9 +138,9 @@ Resends::Resends(std::size_t largest)
   waiting_.reserve(kept_.size());
 }
 
-void Resends::unqueue(std::uint16_t place) noexcept {
-  std::erase(waiting_, place);
-  kept_[place].copies = 0;
+void Resends::unqueue(std::uint16_t slot) noexcept {
+  std::erase(waiting_, slot);
+  kept_[slot].copies = 0;
 }
 
 void Resends::settle(Kept& kept) noexcept {
@@ -162,8 +162,8 @@ std::uint16_t Resends::keep(std::uint64_t datagram, const Packet& packet, const 
   const std::size_t size = portion.bytes.size(), capacity = bytes_.size();
   if (end_ % capacity + size > capacity) end_ += capacity - end_ % capacity;
   while (count_ == kept_.size() || (count_ > 0 && end_ + size > kept_[first_].begin + capacity)) pop();
-  const std::size_t place = (first_ + count_++) % kept_.size();
-  kept_[place] = {.datagrams = {datagram},
+  const std::size_t slot = (first_ + count_++) % kept_.size();
+  kept_[slot] = {.datagrams = {datagram},
                   .number = packet.number,
                   .time = now,
                   .due = now,
@@ -177,20 +177,20 @@ std::uint16_t Resends::keep(std::uint64_t datagram, const Packet& packet, const 
                   .is_settled = false};
   std::ranges::copy(portion.bytes, bytes_.begin() + static_cast<std::ptrdiff_t>(end_ % capacity));
   end_ += size;
-  return static_cast<std::uint16_t>(place);
+  return static_cast<std::uint16_t>(slot);
 }
 
-void Resends::arrived(std::uint16_t place, std::uint64_t datagram) noexcept {
-  if (place == kNone) return;
-  Kept& kept = kept_[place];
+void Resends::arrived(std::uint16_t slot, std::uint64_t datagram) noexcept {
+  if (slot == kNone) return;
+  Kept& kept = kept_[slot];
   if (std::ranges::find(kept.datagrams, datagram) != kept.datagrams.end()) settle(kept);
 }
 
-void Resends::lost(std::uint16_t place, std::uint64_t datagram, std::uint64_t now, unsigned copies) noexcept {
-  if (place == kNone) return;
-  Kept& kept = kept_[place];
+void Resends::lost(std::uint16_t slot, std::uint64_t datagram, std::uint64_t now, unsigned copies) noexcept {
+  if (slot == kNone) return;
+  Kept& kept = kept_[slot];
   if (kept.is_settled || kept.datagrams[0] != datagram) return;
-  if (kept.copies == 0) waiting_.push_back(place);
+  if (kept.copies == 0) waiting_.push_back(slot);
   kept.copies = static_cast<std::uint8_t>(copies);
   kept.due = now;
 }
@@ -212,19 +212,19 @@ const Resends::Kept* Resends::next(std::uint64_t now, const Latest& latest) noex
 }
 
 std::uint16_t Resends::sent(const Kept& copy, std::uint64_t datagram, std::uint64_t now) noexcept {
-  const auto place = static_cast<std::uint16_t>(&copy - kept_.data());
-  Kept& kept = kept_[place];
+  const auto slot = static_cast<std::uint16_t>(&copy - kept_.data());
+  Kept& kept = kept_[slot];
   std::ranges::copy_backward(kept.datagrams.begin(), kept.datagrams.end() - 1, kept.datagrams.end());
   kept.datagrams[0] = datagram;
   kept.due = now + kApart;
-  if (kept.copies == 1) unqueue(place);
+  if (kept.copies == 1) unqueue(slot);
   else --kept.copies;
-  return place;
+  return slot;
 }
 
 std::optional<std::uint64_t> Resends::due() const noexcept {
   std::optional<std::uint64_t> out;
-  for (const std::uint16_t place : waiting_) out = std::min(out.value_or(kept_[place].due), kept_[place].due);
+  for (const std::uint16_t slot : waiting_) out = std::min(out.value_or(kept_[slot].due), kept_[slot].due);
   return out;
 }
 
@@ -254,13 +254,13 @@ void HeldPackets::compact() noexcept {
 }
 
 bool HeldPackets::hold(std::uint64_t number, std::span<const std::uint8_t> packet, std::uint64_t now) noexcept {
-  const auto place = std::ranges::lower_bound(held_, number, {}, &Held::number);
-  if (place != held_.end() && place->number == number) return true;
+  const auto slot = std::ranges::lower_bound(held_, number, {}, &Held::number);
+  if (slot != held_.end() && slot->number == number) return true;
   if (held_.size() == kMost) return false;
   if (end_ + packet.size() > bytes_.size()) compact();
   if (end_ + packet.size() > bytes_.size()) return false;
   std::ranges::copy(packet, bytes_.begin() + static_cast<std::ptrdiff_t>(end_));
-  held_.insert(place, {number, now, end_, packet.size()});
+  held_.insert(slot, {number, now, end_, packet.size()});
   end_ += packet.size();
   return true;
 }

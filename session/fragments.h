@@ -58,7 +58,7 @@ class Fragments {
     std::bitset<kMostFragments> has;  // by fragment
   };
   Packet* find(std::uint64_t number, std::uint64_t substream) noexcept;
-  Packet* place_for(std::uint64_t number, const FragmentPart& fragment) noexcept;
+  Packet* slot_for(std::uint64_t number, const FragmentPart& fragment) noexcept;
 
   std::size_t largest_;
   std::vector<Packet> packets_;
@@ -115,9 +115,9 @@ class PieceSender {
  public:
   /// in   least_gap  [us] from piece to piece at the rate that the user states
   explicit PieceSender(std::shared_ptr<const std::vector<std::uint8_t>> declaration, std::uint64_t least_gap = 0) noexcept
-      : pace(least_gap), bytes_(std::move(declaration)) {}
+      : pacer(least_gap), bytes_(std::move(declaration)) {}
 
-  LinePace pace;
+  LinePacer pacer;
 
   bool is_done() const noexcept { return front_ == piece_count(bytes_->size()); }
   /// The next piece to send: one that is lost, or a new one. Nothing: as many are in flight as may be.
@@ -172,7 +172,7 @@ class PieceReceiver {
 
 class Resends {
  public:
-  static constexpr std::uint16_t kNone = 0xffff;  ///< no place
+  static constexpr std::uint16_t kNone = 0xffff;  ///< no slot
 
   /// What one datagram brought of a packet.
   struct Portion {
@@ -198,18 +198,18 @@ class Resends {
   /// Allocates for kKept datagrams of 64 KiB in all and one packet more.   in  largest  packet [bytes]
   explicit Resends(std::size_t largest);
 
-  /// out  its place, for arrived() and lost() of the datagram
+  /// out  its slot, for arrived() and lost() of the datagram
   std::uint16_t keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now) noexcept;
-  /// The datagram that brought what has this place.
-  void arrived(std::uint16_t place, std::uint64_t datagram) noexcept;
+  /// The datagram that brought what has this slot.
+  void arrived(std::uint16_t slot, std::uint64_t datagram) noexcept;
   /// in   copies  that should go, 10 ms apart; none while a newer datagram with it is in flight
-  void lost(std::uint16_t place, std::uint64_t datagram, std::uint64_t now, unsigned copies) noexcept;
+  void lost(std::uint16_t slot, std::uint64_t datagram, std::uint64_t now, unsigned copies) noexcept;
   /// The copy that goes next.   time O(packets that wait)
   const Kept* next(std::uint64_t now, const Latest& latest) noexcept;
   std::span<const std::uint8_t> bytes(const Kept& kept) const noexcept {
     return std::span(bytes_).subspan(static_cast<std::size_t>(kept.begin % bytes_.size()), kept.size);
   }
-  /// It went in this datagram, which takes over from the one before.   pre  next() has just returned it   out  its place
+  /// It went in this datagram, which takes over from the one before.   pre  next() has just returned it   out  its slot
   std::uint16_t sent(const Kept& copy, std::uint64_t datagram, std::uint64_t now) noexcept;
   std::optional<std::uint64_t> due() const noexcept;  ///< [us] when the next copy may go; nothing: none is to go
 
@@ -222,11 +222,11 @@ class Resends {
   static constexpr std::size_t kKept = 1024, kBytes = 65536;
   void pop() noexcept;
   void settle(Kept& kept) noexcept;
-  void unqueue(std::uint16_t place) noexcept;
+  void unqueue(std::uint16_t slot) noexcept;
 
-  std::vector<Kept, Untouched<Kept>> kept_;  // a ring; only places that were kept are looked at
+  std::vector<Kept, Untouched<Kept>> kept_;  // a ring; only slots that were kept are looked at
   UntouchedBytes bytes_;
-  std::vector<std::uint16_t> waiting_;  // places of what has copies to go
+  std::vector<std::uint16_t> waiting_;  // slots of what has copies to go
   std::size_t first_ = 0, count_ = 0;
   std::uint64_t end_ = 0;  // of the bytes
   bool is_broken_ = false;

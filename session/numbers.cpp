@@ -73,8 +73,8 @@ bool SentNumbers::is_lost(std::uint64_t number, std::uint64_t newest, std::uint6
   Slot* slot = find(number);
   if (slot == nullptr || slot->fate != Fate::open || !round_trip_) return false;
   const std::int64_t waited = static_cast<std::int64_t>(now - slot->time);
-  const std::int64_t patience = round_trip_->smoothed + std::max<std::int64_t>(4 * round_trip_->variation, 1000);
-  if (waited <= patience && newest - number <= 64) return false;
+  const std::int64_t timeout = round_trip_->smoothed + std::max<std::int64_t>(4 * round_trip_->variation, 1000);
+  if (waited <= timeout && newest - number <= 64) return false;
   slot->fate = Fate::lost;
   count(true);
   return true;
@@ -129,7 +129,7 @@ Result<std::uint64_t> ReceivedNumbers::extend(std::uint16_t wire) const noexcept
   return number;
 }
 
-void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, AckTiming timing, const Patience& patience) noexcept {
+void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, AckTiming timing, const AckDelay& delay) noexcept {
   if (accepted_.is_too_old(number)) return;
   if (number > accepted_.newest()) newest_at_ = now;
   accepted_.add(number);
@@ -137,10 +137,10 @@ void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, AckTiming 
   else changes_reported_ = true;
   const bool full = ++unreported_ >= kUnreported;
   if (timing == AckTiming::never && !full) return;
-  const std::uint64_t usual = timing == AckTiming::now || full ? now : now + patience.usual;
+  const std::uint64_t usual = timing == AckTiming::now || full ? now : now + delay.usual;
   if (!eliciting_at_) eliciting_at_ = now;
   const bool is_well = usual > now && !changes_reported_ && above_reported_ == accepted_.newest() - reported_;
-  due_ = is_well ? *eliciting_at_ + patience.all_is_well : std::min(due_.value_or(usual), usual);
+  due_ = is_well ? *eliciting_at_ + delay.all_is_well : std::min(due_.value_or(usual), usual);
 }
 
 Acknowledgement ReceivedNumbers::acknowledge(std::uint64_t now) noexcept {

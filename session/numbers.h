@@ -175,12 +175,12 @@ class ReceivedNumbers {
 
   /// [us] that an acknowledgement waits for a datagram to ride on: `all_is_well` if every number that the last one did not report has
   /// come, and none that it reported missing; else `usual`.
-  struct Patience {
+  struct AckDelay {
     std::uint64_t usual = 0, all_is_well = 0;
   };
   /// A received datagram, all of whose packets are decoded, is to be acknowledged.
   /// in   now  [us]
-  void accept(std::uint64_t number, std::uint64_t now, AckTiming timing, const Patience& patience) noexcept;
+  void accept(std::uint64_t number, std::uint64_t now, AckTiming timing, const AckDelay& delay) noexcept;
 
   bool has_news() const noexcept { return due_.has_value(); }
   /// [us] when an acknowledgement should go even if nothing else does

@@ -72,7 +72,7 @@ void ServerConnection::begin_epoch(const ServedScene& served, std::uint64_t epoc
   hashes_ = {};
   held_ = false;
   device_clock_.reset();
-  pace_.reset();
+  mapping_.reset();
   next_tick_ = 0;
   buttons_ = {};
   playout_ = 0;
@@ -130,9 +130,9 @@ Result<void> ServerConnection::handle_datagram(std::uint64_t now, std::span<cons
   if (heard->round_trip) measured(*heard->round_trip, now);
   if (device_clock_) device_clock_->heard(heard->number, heard->tick, now);
   if (device_clock_ && heard->round_trip) device_clock_->measured(*heard->round_trip, now);
-  if (pace_ && heard->tick) pace_->heard(*heard->tick);
+  if (mapping_ && heard->tick) mapping_->heard(*heard->tick);
   const std::uint64_t newest = exchange_->sent().highest_acknowledged();
-  if (pace_) pace_->acknowledged(newest);
+  if (mapping_) mapping_->acknowledged(newest);
   if (seat_number_ > 0 && newest >= seat_number_) seat_waits_ = false;  // all since the first have it
   return {};
 }
@@ -169,14 +169,14 @@ void ServerConnection::take(const ReportPart& report, std::uint64_t now) noexcep
 /// From where the client looks, in a scene with interest: a participant from its device at least, as soon as that is known.
 void ServerConnection::look() noexcept {
   if (!served_.scene->interest || (!view_ && join_.role == Role::observer)) return;
-  std::array<Vec3, 2> places;
+  std::array<Vec3, 2> viewpoints;
   std::size_t count = 0;
-  if (view_) places[count++] = *view_;
+  if (view_) viewpoints[count++] = *view_;
   if (exchange_->receiver && exchange_->receiver->tick(0) > 0) {
     const RigidState& device = exchange_->receiver->object(0);
-    places[count++] = to_pose({device.position, device.rotation}, served_.device->grid.position).position;
+    viewpoints[count++] = to_pose({device.position, device.rotation}, served_.device->grid.position).position;
   }
-  exchange_->sender->set_viewpoints(std::span(places).first(count));
+  exchange_->sender->set_viewpoints(std::span(viewpoints).first(count));
 }
 
 /// Before it is live a client knows only a delay that its user has fixed: it must be long enough for a copy.
@@ -246,7 +246,7 @@ bool ServerConnection::take(std::uint64_t now, ClientParts& parts) {
     const auto& limits = served_.scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual;
     device_clock_.emplace(served_.scene->tick_rate, PlayoutOptions{.fixed = 0}, static_cast<std::int64_t>(limits.stale));
     exchange_->path = std::move(parts.path);
-    if (exchange_->path) pace_.emplace(served_.scene->tick_rate);
+    if (exchange_->path) mapping_.emplace(served_.scene->tick_rate);
   }
   exchange_->pieces.reset();
   state_ = *next;
@@ -326,21 +326,21 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
   if (held_) return std::nullopt;  // an acknowledgement would mean that what the client has is new
   exchange_->expire_pieces(now);
   const bool piece = piece_due().value_or(now + 1) <= now;
-  const bool wanted = piece || wants_pace(now) || wants_seat(now);
+  const bool wanted = piece || wants_mapping(now) || wants_seat(now);
   const auto datagram = exchange_->poll(now, wanted, [&](DatagramWriter& writer, std::uint64_t number) {
     if (served_.shift && now >= clock_at_ && !writer.empty()) {  // together with an acknowledgement
       writer.add(ClockPart{clock_to_send(now)});
       clock_at_ = now + (exchange_->path ? kDrivenClockEvery : kClockEvery);
     }
-    const bool pace = pace_ && pace_->waits();
-    if (pace) {
-      pace_->send(writer, number);
-      pace_at_ = now + exchange_->patience();
+    const bool mapping = mapping_ && mapping_->waits();
+    if (mapping) {
+      mapping_->send(writer, number);
+      mapping_at_ = now + exchange_->ack_timeout();
     }
     if (piece) add_piece(writer, number, now);
     if (seat_waits_) add_seat(writer, number, now);
     const bool baselines = signal_baselines(writer, number);
-    return pace || piece || seat_waits_ || baselines;
+    return mapping || piece || seat_waits_ || baselines;
   });
   if (datagram) line_.sent(exchange_->sent().newest(), datagram->size() + headers_, now);
   if (datagram && !piece) bucket_.take(static_cast<std::int64_t>(8 * (datagram->size() + headers_)), now);
@@ -368,13 +368,13 @@ std::uint64_t ServerConnection::clock_to_send(std::uint64_t now) const noexcept 
 void ServerConnection::add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept {
   if (!exchange_->add_piece(writer, number, now)) return;
   const auto next = [now](std::uint64_t at, std::uint64_t gap) { return std::max(at + kPieceLag, now) - kPieceLag + gap; };
-  piece_at_ = next(piece_at_, exchange_->pieces->pace.gap());
-  pieces_at_ = next(pieces_at_, LinePace::kLeastGap);
+  piece_at_ = next(piece_at_, exchange_->pieces->pacer.gap());
+  pieces_at_ = next(pieces_at_, LinePacer::kLeastGap);
 }
 
 void ServerConnection::add_seat(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept {
   writer.add(SeatPart{seat_});
-  seat_at_ = now + exchange_->patience();
+  seat_at_ = now + exchange_->ack_timeout();
   if (seat_number_ == 0) seat_number_ = number;
 }
 
@@ -384,7 +384,7 @@ std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
   if (repeats_welcome_ && state_ == SessionState::receiving) due = std::min(due, welcome_at_);
   if (held_ || !exchange_->sent().next()) return due;  // nothing else may be sent, or there is no number left
   if (const auto acknowledgement = exchange_->due()) due = std::min(due, *acknowledgement);
-  if (pace_ && pace_->waits()) due = std::min(due, pace_at_);
+  if (mapping_ && mapping_->waits()) due = std::min(due, mapping_at_);
   if (seat_waits_) due = std::min(due, seat_at_);
   if (const auto piece = piece_due()) due = std::min(due, *piece);
   if (const auto lost = exchange_->pieces_due()) due = std::min(due, *lost);
@@ -393,7 +393,7 @@ std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
 
 std::optional<DeviceSample> ServerConnection::device(std::uint64_t now) noexcept {
   if (state_ != SessionState::live || !device_clock_) return std::nullopt;
-  if (pace_ && next_tick_ > 0) return driving_device(now);  // before the first submit() the tick is not known
+  if (mapping_ && next_tick_ > 0) return driving_device(now);  // before the first submit() the tick is not known
   const std::int64_t tick = device_clock_->shown(now);
   if (tick < 0) return std::nullopt;
   return device_at(*exchange_->receiver, tick, buttons_.mask);
@@ -403,11 +403,11 @@ std::optional<DeviceSample> ServerConnection::device(std::uint64_t now) noexcept
 std::optional<DeviceSample> ServerConnection::driving_device(std::uint64_t now) noexcept {
   DevicePath& path = *exchange_->path;
   if (const std::int64_t device = device_clock_->shown(now); device >= 0)
-    if (const auto change = pace_->step(next_tick_, device)) path.shift(change->from, change->offset);
+    if (const auto change = mapping_->step(next_tick_, device)) path.shift(change->from, change->offset);
   path.pass(next_tick_);
-  const auto place = path.place(next_tick_);
-  if (!place) return std::nullopt;
-  return device_of(*path.scene(), place->state, place->tick, buttons_.mask);
+  const auto found = path.state_at(next_tick_);
+  if (!found) return std::nullopt;
+  return device_of(*path.scene(), found->state, found->tick, buttons_.mask);
 }
 
 ClientStatus ServerConnection::status() const noexcept {

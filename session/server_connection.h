@@ -119,7 +119,7 @@ class ServerConnection {
   void look() noexcept;
   std::optional<DeviceSample> driving_device(std::uint64_t now) noexcept;
   bool signal_baselines(DatagramWriter& writer, std::uint64_t number) noexcept;
-  bool wants_pace(std::uint64_t now) const noexcept { return pace_ && pace_->waits() && now >= pace_at_; }
+  bool wants_mapping(std::uint64_t now) const noexcept { return mapping_ && mapping_->waits() && now >= mapping_at_; }
   bool wants_seat(std::uint64_t now) const noexcept { return seat_waits_ && now >= seat_at_; }
   std::optional<std::uint64_t> piece_due() const noexcept;
   bool wants_welcome(std::uint64_t now) const noexcept;
@@ -167,9 +167,9 @@ class ServerConnection {
   std::size_t next_hash_ = 0;
   std::uint64_t wrong_states_ = 0;
   std::optional<PlayoutClock> device_clock_;
-  std::optional<DevicePace> pace_;  // if the device may drive objects
+  std::optional<DeviceTickMapping> mapping_;  // if the device may drive objects
   std::int64_t next_tick_ = 0;      // of submit()
-  std::uint64_t pace_at_ = 0;       // [us] when its changes go again
+  std::uint64_t mapping_at_ = 0;       // [us] when its changes go again
   ButtonsPart buttons_;
   std::uint64_t playout_ = 0;                    // [us] that the client reported last
   std::optional<Vec3> view_;                     // [m] where it looks from, by its report

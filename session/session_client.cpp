@@ -21,7 +21,7 @@ constexpr std::uint64_t kFirstRetry = 100'000, kRejoin = 250'000, kLastRetry = 2
 // [us] from one keep-alive to the next: of a participant to whom a force is rendered, over a network that loses or not; of another
 // participant; of an observer while packets come, and at rest.
 constexpr std::uint64_t kRenderedAtLoss = 12'000, kRendered = 25'000, kParticipant = 50'000, kServed = 100'000, kIdle = 1'000'000;
-constexpr std::uint64_t kMoving = 100'000;  // [us] the same, while the place moves that it looks from
+constexpr std::uint64_t kMoving = 100'000;  // [us] the same, while its viewpoint moves
 constexpr std::uint64_t kSeldom = 2;        // times these, of a client that computes what its device does
 constexpr std::uint32_t kSomeLoss = 65536 / 50;
 constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
@@ -225,8 +225,8 @@ Result<void> SessionClient::Impl::take(const Part& part, const Exchange::Heard& 
     return current->pieces.take(piece->index, piece->bytes);
   } else if (const auto* baselines = std::get_if<BaselinesPart>(&part)) {
     current->exchange.expect(baselines->policy == 0);
-  } else if (const auto* pace = std::get_if<PacePart>(&part)) {
-    if (current->exchange.path) current->exchange.path->shift(pace->from, pace->offset);
+  } else if (const auto* mapping = std::get_if<TickMappingPart>(&part)) {
+    if (current->exchange.path) current->exchange.path->shift(mapping->from, mapping->offset);
   } else if (const auto* given = std::get_if<SeatPart>(&part)) {
     seat = given->seat;
   }
@@ -252,7 +252,7 @@ void SessionClient::Impl::play(const Exchange::Heard& heard, std::uint64_t now) 
 /// Packets wait longer than any copy can need.
 bool SessionClient::Impl::is_stuck(std::uint64_t now) const noexcept {
   const auto since = current->exchange.waits_since();
-  return since && now > *since + std::max(kStuck, 4 * current->exchange.patience());
+  return since && now > *since + std::max(kStuck, 4 * current->exchange.ack_timeout());
 }
 
 /// The declaration is here: show its scene from now on, or leave.
@@ -311,12 +311,12 @@ std::uint64_t SessionClient::Impl::keep_alive_due() const noexcept {
   return has_moved() ? std::min(due, current->exchange.next_send(keep_alive_at + kMoving)) : due;
 }
 
-/// The server asks for the place that the user looks from.
+/// The server asks for the viewpoint of the user.
 bool SessionClient::Impl::looks() const noexcept {
   return view && state == SessionState::live && current->exchange.receiver && current->exchange.receiver->scene()->interest;
 }
 
-/// Away from the place that the server knows, by 0.1 m.
+/// Away from the viewpoint that the server knows, by 0.1 m.
 bool SessionClient::Impl::has_moved() const noexcept {
   constexpr std::int64_t kStep = (std::int64_t{1} << ReportPart::kViewExponent) / 10;
   if (!looks()) return false;
@@ -342,7 +342,7 @@ ReportPart SessionClient::Impl::report(std::uint64_t now) noexcept {
 std::uint64_t SessionClient::Impl::rejoin_due() const noexcept {
   const auto since = current->exchange.unanswered();
   if (!since) return std::numeric_limits<std::uint64_t>::max();
-  return rejoins ? join_at : *since + std::max(kUnanswered, 2 * current->exchange.patience());
+  return rejoins ? join_at : *since + std::max(kUnanswered, 2 * current->exchange.ack_timeout());
 }
 
 bool SessionClient::Impl::has_buttons_due(std::uint64_t now) const noexcept {
@@ -366,11 +366,11 @@ Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample
   const auto rate = static_cast<std::uint64_t>(epoch.exchange.sender->scene()->tick_rate);
   const auto tick = static_cast<std::int64_t>((now - epoch.device_start) * rate / 1'000'000);
   if (tick <= epoch.device_tick) return {};
-  std::array<std::int32_t, 3> place{};
+  std::array<std::int32_t, 3> position{};
   std::array<std::int32_t, 4> turn{};
   const std::uint8_t exponent = epoch.exchange.sender->scene()->grid.position;
   const RuleName broken =
-      is_finite(sample.velocity) ? quantise({sample.position, sample.orientation}, exponent, place, turn) : RuleName("R-API-1");
+      is_finite(sample.velocity) ? quantise({sample.position, sample.orientation}, exponent, position, turn) : RuleName("R-API-1");
   TACTUS_CHECK(epoch.exchange.submit(now, tick, epoch.device->of(tick, sample, contact)));
   epoch.device_tick = tick;
   in.feels = contact.has_value();
@@ -384,9 +384,9 @@ Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample
   return {};
 }
 
-void SessionClient::set_viewpoint(const Vec3& place) noexcept {
+void SessionClient::set_viewpoint(const Vec3& viewpoint) noexcept {
   std::array<std::int32_t, 3> view{};
-  const std::array from{place.x, place.y, place.z};
+  const std::array from{viewpoint.x, viewpoint.y, viewpoint.z};
   for (std::size_t i = 0; i < 3; ++i)
     if (!quantise(from[i], ReportPart::kViewExponent, 2147483647.0, view[i])) return;
   impl_->view = view;

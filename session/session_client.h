@@ -63,7 +63,7 @@ class SessionClient {
 
   /// In a scene with interest: where the user looks from [m, world frame], apart from the device of a participant. Objects far from both are sent
   /// less exactly or not at all (Replica::lod()). Say so before open(): an observer is sent all until it has. What is not finite, or beyond 8000 km, does not count.
-  void set_viewpoint(const Vec3& place) noexcept;
+  void set_viewpoint(const Vec3& viewpoint) noexcept;
 
   std::optional<std::span<const std::uint8_t>> poll_datagram(std::uint64_t now) noexcept;  ///< valid until the next call
   std::optional<ClientEvent> poll_event() noexcept;

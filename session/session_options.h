@@ -105,7 +105,7 @@ struct PlayoutOptions {
 enum class LossPolicy : std::uint8_t {
   by_role,  ///< repair for observers, unless they fix a playout delay too short for it; prompt for participants: a hand feels the delay
   repair,  ///< on the packet before; what is lost goes again, and the client shows the past by a round trip more: half the bits
-  prompt,  ///< on what was acknowledged; nothing waits for what is lost, and the client bends over it
+  prompt,  ///< on what was acknowledged; nothing waits for what is lost, and the client interpolates over it
 };
 
 struct SessionServerOptions {

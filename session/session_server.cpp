@@ -142,7 +142,7 @@ ServerConnection* SessionServer::Impl::follow(std::uint64_t peer, std::uint64_t 
   return known->get();
 }
 
-/// A place for the client, or why there is none.
+/// A slot for the client, or why there is none.
 Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, const Join& message) noexcept {
   const auto refuse = [&](LeaveReason reason) {
     reply.emplace(peer, Refusal{message.nonce, reason});
@@ -155,29 +155,29 @@ Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, co
     return {};
   }
   const bool is_here = find(peer) != nullptr;
-  ServerConnection* place = follow(peer, message.token);
-  if (place != nullptr && place->state() != SessionState::closed && place->nonce() == message.nonce) {
-    if (!is_here) note({.kind = ServerEvent::Kind::moved, .client = place->client()});
-    reply.emplace(peer, place->welcome());
+  ServerConnection* slot = follow(peer, message.token);
+  if (slot != nullptr && slot->state() != SessionState::closed && slot->nonce() == message.nonce) {
+    if (!is_here) note({.kind = ServerEvent::Kind::moved, .client = slot->client()});
+    reply.emplace(peer, slot->welcome());
     return {};
   }
-  if (place != nullptr) drop(*place, SessionEvent::left, LeaveReason::bye);  // the client has begun anew
+  if (slot != nullptr) drop(*slot, SessionEvent::left, LeaveReason::bye);  // the client has begun anew
   if (!served.fits(message)) {
     refuse(LeaveReason::limits);
     return {};
   }
-  if (place == nullptr) {
+  if (slot == nullptr) {
     const auto free = std::ranges::find_if(connections, [](const auto& c) { return c->is_free(); });
     if (free == connections.end()) {
       refuse(LeaveReason::full);
       return {};
     }
-    place = free->get();
+    slot = free->get();
   }
-  place->open(peer, message, served, draw(entropy), now);
-  peers[place->client()] = peer;
-  reply.emplace(peer, place->welcome());
-  note({.kind = ServerEvent::Kind::joined, .client = place->client()});
+  slot->open(peer, message, served, draw(entropy), now);
+  peers[slot->client()] = peer;
+  reply.emplace(peer, slot->welcome());
+  note({.kind = ServerEvent::Kind::joined, .client = slot->client()});
   return {};
 }
 

@@ -123,7 +123,7 @@ class SessionServer {
   std::optional<std::uint64_t> next_timeout() const noexcept;
 
   /// The device of a live participant; nothing: it was not heard yet, or the client is an observer. In a driven scene it is the device in the
-  /// tick after that of the last submit(), as the client will know it: ask once before each submit(), and give that place as Contact::device.
+  /// tick after that of the last submit(), as the client will know it: ask once before each submit(), and give that position as Contact::device.
   std::optional<DeviceSample> device(std::uint16_t client, std::uint64_t now) noexcept;
   /// Hash of the state of its device scene.   pre  a live participant
   std::uint64_t device_hash(std::uint16_t client) const noexcept;

@@ -76,7 +76,7 @@ constexpr std::uint64_t kAdaptEvery = 100'000;                 // [us]
 constexpr std::int64_t kShrink = 100;                          // [us] in this time: 1 ms per second
 constexpr std::int64_t kLong = 150'000;                        // [us]: what is above goes sooner
 constexpr std::uint64_t kUndecided = 1'000'000;  // [us] in which a change is found to be one of the link or of a clock
-constexpr std::int64_t kAnswer = 10'000, kMargin = 10'000, kApart = 10'000;  // [us] of an acknowledgement; beyond; between copies
+constexpr std::int64_t kAckDelay = 10'000, kMargin = 10'000, kApart = 10'000;  // [us] of an acknowledgement; beyond; between copies
 constexpr std::uint32_t kLossy = 65536 / 333, kLossier = 65536 / 20, kLossiest = 65536 * 3 / 20;  // fractions x 2^-16
 constexpr std::int64_t kLeastJitter = 20'000;                                                     // [us]
 constexpr std::int64_t kMostJitter = 50'000;  // [us] of round trips: what is above is a standstill or a queue
@@ -97,7 +97,7 @@ void PlayoutClock::heard(std::uint64_t number, std::optional<std::int64_t> tick,
   if (shown_ < 0) return;
   if (at - heard_at_ >= reach_) follows_ = false;
   heard_at_ = at;
-  if (tick) know(time_of(*tick), at - time_of(*tick)), learn(at - time_of(*tick), now);
+  if (tick) observe(time_of(*tick), at - time_of(*tick)), learn(at - time_of(*tick), now);
   else if (follows_ && number > newest_ && !waits_) news_ = std::max(news_, at - lead_);  // as new as its delay lets it be
   newest_ = std::max(newest_, number);
   if (tick) add(at - time_of(*tick), now);
@@ -107,7 +107,7 @@ void PlayoutClock::heard(std::uint64_t number, std::optional<std::int64_t> tick,
 void PlayoutClock::clock_signalled(std::int64_t time, std::uint64_t now) noexcept {
   if (shown_ < 0) return;
   const std::int64_t lead = static_cast<std::int64_t>(now) - time;
-  if (!waits_) know(time, lead);
+  if (!waits_) observe(time, lead);
   if (time >= signalled_) lead_ = lead;  // also of a clock that stands
   signalled_ = std::max(signalled_, time);
   learn(lead, now);
@@ -116,14 +116,14 @@ void PlayoutClock::clock_signalled(std::int64_t time, std::uint64_t now) noexcep
 }
 
 /// Up to this time of the other end's ticks [us] something is known.
-void PlayoutClock::know(std::int64_t time, std::int64_t lead) noexcept {
+void PlayoutClock::observe(std::int64_t time, std::int64_t lead) noexcept {
   if (time > news_ || !follows_) lead_ = lead;
   news_ = std::max(news_, time);
   follows_ = true;
 }
 
 void PlayoutClock::repaired(std::int64_t tick) noexcept {
-  if (shown_ >= 0) know(time_of(tick), lead_);
+  if (shown_ >= 0) observe(time_of(tick), lead_);
 }
 
 void PlayoutClock::held(std::int64_t tick, std::uint64_t at, std::uint64_t now) noexcept {
@@ -133,7 +133,7 @@ void PlayoutClock::held(std::int64_t tick, std::uint64_t at, std::uint64_t now) 
   if (first) {
     shown_ = tick;
     heard_at_ = static_cast<std::int64_t>(now);
-    know(time_of(tick), lead);
+    observe(time_of(tick), lead);
   }
   learn(lead, now);
   add(lead, now);
@@ -141,26 +141,26 @@ void PlayoutClock::held(std::int64_t tick, std::uint64_t at, std::uint64_t now) 
 }
 
 /// [us] from the sending of what is lost to the arrival of its copy, less the one-way delay.
-std::int64_t PlayoutClock::answer() const noexcept {
+std::int64_t PlayoutClock::repair_time() const noexcept {
   if (!repair_) return 0;
   const std::int64_t seen = 2 * (repair_->smoothed - repair_->least) + kLeastJitter;  // the variation begins far too high
   const std::int64_t trip = repair_->smoothed + std::min(4 * repair_->variation, seen);
-  return std::min(trip, 2 * repair_->least + kMostJitter) + kAnswer + kMargin;
+  return std::min(trip, 2 * repair_->least + kMostJitter) + kAckDelay + kMargin;
 }
 
 void PlayoutClock::waits(std::optional<std::uint64_t> since, std::uint64_t now) noexcept {
   waits_ = since.has_value();
   if (!waits_ || options_.fixed) return;
   if (now > *since + std::max<std::uint64_t>(kReordering, static_cast<std::uint64_t>(late_ - least_)))
-    delay_ = std::max(delay_, least_ + answer() + kApart);
+    delay_ = std::max(delay_, least_ + repair_time() + kApart);
 }
 
 /// How far behind to show, so that copies come in time: two or three rounds of them where copies get lost, too.
 std::int64_t PlayoutClock::for_repair(std::uint64_t now) const noexcept {
   const std::uint32_t loss = bursts_.loss(now);
-  if (loss > kLossiest) return 2 * answer() + 3 * kAnswer;
-  if (loss > kLossier) return answer() * 3 / 2 + kAnswer;
-  return loss > kLossy ? answer() + kApart : 0;
+  if (loss > kLossiest) return 2 * repair_time() + 3 * kAckDelay;
+  if (loss > kLossier) return repair_time() * 3 / 2 + kAckDelay;
+  return loss > kLossy ? repair_time() + kApart : 0;
 }
 
 /// For whether a clock stood still.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What is shown and sent when: clocks of both ends, playout, the device's pace, forces that fade. Integers. Internal to the library.
+/// What is shown and sent when: clocks of both ends, playout, the device's tick mapping, forces that fade. Integers. Internal to the library.
 #pragma once
 
 #include <algorithm>
@@ -120,8 +120,8 @@ class PlayoutClock {
     std::optional<std::int64_t> trip_before;
   };
   void learn(std::int64_t lead, std::uint64_t now) noexcept;
-  void know(std::int64_t time, std::int64_t lead) noexcept;
-  std::int64_t answer() const noexcept;
+  void observe(std::int64_t time, std::int64_t lead) noexcept;
+  std::int64_t repair_time() const noexcept;
   std::int64_t for_repair(std::uint64_t now) const noexcept;
   void add(std::int64_t lead, std::uint64_t now) noexcept;
   void adapt(std::uint64_t now) noexcept;
@@ -158,24 +158,24 @@ class PlayoutClock {
   std::int64_t shown_ = -1;
 };
 
-// ==== device pace ====
+// ==== device tick mapping ====
 // How the ticks of a client's device follow those of the server, so that its packets arrive before they act: a policy of the server.
 // spec/65-signal.md section 4, informative part.
 
-class DevicePace {
+class DeviceTickMapping {
  public:
-  explicit DevicePace(std::uint32_t tick_rate) noexcept
+  explicit DeviceTickMapping(std::uint32_t tick_rate) noexcept
       : period_(2 * std::int64_t{tick_rate}), margin_((tick_rate + 499) / 500) {}
 
-  /// A packet came.   in  device  its tick. Whether it is late is a matter of the pace: it may be held, and a packet too late to act
-  ///                             though the pace is slow enough already
+  /// A packet came.   in  device  its tick. Whether it is late is a matter of the mapping: it may be held, and a packet too late to act
+  ///                             though the offset is large enough already
   void heard(std::int64_t device) noexcept {
     if (offset_) least_ = std::min(least_, device - (tick_ - *offset_));
   }
 
   /// What changes from this tick of the server on, if anything does.
   /// in   device  tick of the device that the fastest packets bring now
-  std::optional<PacePart> step(std::int64_t tick, std::int64_t device) noexcept {
+  std::optional<TickMappingPart> step(std::int64_t tick, std::int64_t device) noexcept {
     const std::int64_t before = offset_.value_or(std::numeric_limits<std::int64_t>::min());
     tick_ = tick;
     if (!offset_) offset_ = tick - device + margin_;
@@ -185,7 +185,7 @@ class DevicePace {
     until_ = tick + period_;
     least_ = kNone;
     if (*offset_ == before) return std::nullopt;
-    const PacePart out{tick, *offset_};
+    const TickMappingPart out{tick, *offset_};
     sent_[next_++ % sent_.size()] = {out, 0};
     waiting_ = std::min(waiting_ + 1, sent_.size());
     return out;
@@ -213,7 +213,7 @@ class DevicePace {
  private:
   static constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
   struct Sent {
-    PacePart part;
+    TickMappingPart part;
     std::uint64_t number = 0;  // of the first datagram that carried it; every one since did, too
   };
 
@@ -221,7 +221,7 @@ class DevicePace {
   std::optional<std::int64_t> offset_;
   std::int64_t tick_ = 0;       // of the last step
   std::int64_t least_ = kNone;  // [ticks] until a packet takes effect that came since the last change; 0 or less: too late
-  std::int64_t until_ = 0;      // before this tick the pace does not get faster
+  std::int64_t until_ = 0;      // before this tick the offset does not get smaller
   std::array<Sent, 8> sent_{};  // a ring
   std::size_t next_ = 0, waiting_ = 0;
 };

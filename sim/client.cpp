@@ -134,7 +134,7 @@ Client::Client(Server& server, std::optional<Receiver> receiver)
   DeformableObjects* deformables = server.deformables();
   if (!deformables) return;
   for (const TraceDeformable& mesh : deformables->meshes()) {
-    places_.push_back({centre(mesh.rest), {}});
+    mesh_poses_.push_back({centre(mesh.rest), {}});
     shown_.push_back({.period = mesh.period});
   }
   if (server.stream_scene()) objects_.push_back(&deformables_.emplace(scene_, deformables->meshes()));
@@ -279,7 +279,7 @@ void Client::touch(std::size_t user, const DeviceSample& device, const Rendering
 
 const Pose& Client::watched(std::size_t user) const noexcept {
   const std::size_t object = scene_.users[user].object;
-  return object < poses_.size() ? poses_[object] : places_[object - poses_.size()];
+  return object < poses_.size() ? poses_[object] : mesh_poses_[object - poses_.size()];
 }
 
 }  // namespace tactus::sim

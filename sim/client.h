@@ -130,7 +130,7 @@ class Client {
   const Scene& scene_;
   std::optional<Receiver> receiver_;  // none: the truth is shown, or what a network gives
   std::vector<Pose> poses_;
-  std::vector<Pose> places_;  // of deformable objects, for users who look at one
+  std::vector<Pose> mesh_poses_;  // of deformable objects, for users who look at one
   struct ShownMesh {
     double period = 1;        // [ticks] from frame to frame
     std::int64_t frame = -1;  // shown last

@@ -21,7 +21,7 @@ LAYERS = ("codec", "session", "io", "metrics", "sim", "device", "cli")  # each i
 MAX_LINES = 600
 ONE_FILE = {".lua"}  # what users copy to install it: may be longer
 SHARED = {"base", "mesh"}  # folders of codec/ that are not subjects of the specification
-# Everything else in codec/ and session/ is integers: what both ends compute is the same on every machine. These files are doors: SI units come in
+# Everything else in codec/ and session/ is integers: what both ends compute is the same on every machine. These files are interfaces: SI units come in
 # or go out, a sender decides what to send, options are read once, a quotient of integers is estimated and then corrected, and the
 # basis and the elastic bodies that both ends compute are binary64 in a written order.
 FLOATS = {"base/elementary", "base/geometry", "base/quantise", "base/tri_mesh", "client/replica", "client/stiffness_reduction",

@@ -148,21 +148,21 @@ tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32_t substrea
   });
 }
 
-tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t answer, double loss, tactus_error* error) {
+tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t ack_timeout, double loss, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     if (sender == nullptr) return refuse();
-    if (answer < 0 || answer > kLastTick || !(loss >= 0 && loss <= 1)) return fail(Errc::invalid_argument, "R-API-4");
-    sender->sender.set_link({.answer = answer, .loss = loss});
+    if (ack_timeout < 0 || ack_timeout > kLastTick || !(loss >= 0 && loss <= 1)) return fail(Errc::invalid_argument, "R-API-4");
+    sender->sender.set_link({.ack_timeout = ack_timeout, .loss = loss});
     return TACTUS_OK;
   });
 }
 
-tactus_status tactus_sender_set_viewpoints(tactus_sender* sender, const double* places, size_t count, tactus_error* error) {
+tactus_status tactus_sender_set_viewpoints(tactus_sender* sender, const double* viewpoints, size_t count, tactus_error* error) {
   return call(error, [&]() -> Outcome {
-    if (sender == nullptr || (places == nullptr && count > 0)) return refuse();
+    if (sender == nullptr || (viewpoints == nullptr && count > 0)) return refuse();
     std::array<Vec3, 2> out;
     const std::size_t used = std::min(count, out.size());
-    for (std::size_t i = 0; i < used; ++i) out[i] = {places[3 * i], places[3 * i + 1], places[3 * i + 2]};
+    for (std::size_t i = 0; i < used; ++i) out[i] = {viewpoints[3 * i], viewpoints[3 * i + 1], viewpoints[3 * i + 2]};
     sender->sender.set_viewpoints(std::span(out).first(used));
     return TACTUS_OK;
   });

@@ -178,10 +178,10 @@ tactus_status tactus_client_submit(tactus_client* client, uint64_t now, const ta
   });
 }
 
-tactus_status tactus_client_set_viewpoint(tactus_client* client, uint64_t now, const double* place, tactus_error* error) {
+tactus_status tactus_client_set_viewpoint(tactus_client* client, uint64_t now, const double* viewpoint, tactus_error* error) {
   return call_at(client, now, error, [&](SessionClient& session) -> Outcome {
-    if (place == nullptr) return refuse();
-    session.set_viewpoint({place[0], place[1], place[2]});
+    if (viewpoint == nullptr) return refuse();
+    session.set_viewpoint({viewpoint[0], viewpoint[1], viewpoint[2]});
     return TACTUS_OK;
   });
 }

@@ -64,7 +64,7 @@ enum {
 typedef struct tactus_error {
   tactus_status status;
   const char* rule;    /* name in spec/rules.csv, such as "R-STR-4"; static */
-  uint64_t bit_offset; /* place in the input, in bits; 0 when there is none */
+  uint64_t bit_offset; /* position in the input, in bits; 0 when there is none */
 } tactus_error;
 
 /* How a receiver reacts to what it cannot decode. */
@@ -269,7 +269,7 @@ enum {
   TACTUS_INTERPOLATION_LINEAR = 1,
   TACTUS_INTERPOLATION_HERMITE = 2,
   TACTUS_INTERPOLATION_BLENDING = 3,
-  TACTUS_INTERPOLATION_PLAYOUT = 4 /* the client shows the past and bends over the gaps that losses leave */
+  TACTUS_INTERPOLATION_PLAYOUT = 4 /* the client shows the past and interpolates over the gaps that losses leave */
 };
 
 typedef struct tactus_receiver_options {
@@ -334,7 +334,7 @@ TACTUS_API tactus_status tactus_player_open(const uint8_t* file, size_t size, co
 TACTUS_API void tactus_player_destroy(tactus_player* player);
 TACTUS_API tactus_receiver* tactus_player_receiver(tactus_player* player); /* borrowed */
 /* Apply the next packet that is due at `tick`; TACTUS_NOTHING when none is. Call it until then.   in  info  may be NULL
-   err  R-FIL and those of tactus_receiver_push, with places in the file */
+   err  R-FIL and those of tactus_receiver_push, with positions in the file */
 TACTUS_API tactus_status tactus_player_play(tactus_player* player, int64_t tick, tactus_packet_info* info, tactus_error* error);
 /* Tick of the next packet; TACTUS_NOTHING at the end. */
 TACTUS_API tactus_status tactus_player_next_tick(tactus_player* player, int64_t* tick, tactus_error* error);

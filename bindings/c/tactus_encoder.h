@@ -239,11 +239,11 @@ TACTUS_API tactus_status tactus_sender_request_key(tactus_sender* sender, tactus
 /* A receiver has decoded a packet: TACTUS_BASELINE_ACKNOWLEDGED builds on it. */
 TACTUS_API tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32_t substream, uint32_t sequence,
                                                    tactus_error* error);
-/* in   answer  [ticks] until a packet is acknowledged, 0: not known;  loss  fraction of packets */
-TACTUS_API tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t answer, double loss, tactus_error* error);
+/* in   ack_timeout  [ticks] until a packet is acknowledged, 0: not known;  loss  fraction of packets */
+TACTUS_API tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t ack_timeout, double loss, tactus_error* error);
 /* In a scene with interest: where the receiver looks from, from the next tick on. Before the first call it is sent all in full.
-   in   places  x y z of each [m, world], two at most: others do not count;  count  0: it looks from nowhere that is known */
-TACTUS_API tactus_status tactus_sender_set_viewpoints(tactus_sender* sender, const double* places, size_t count, tactus_error* error);
+   in   viewpoints  x y z of each [m, world], two at most: others do not count;  count  0: it looks from nowhere that is known */
+TACTUS_API tactus_status tactus_sender_set_viewpoints(tactus_sender* sender, const double* viewpoints, size_t count, tactus_error* error);
 TACTUS_API tactus_status tactus_sender_state_hash(const tactus_sender* sender, uint32_t substream, uint64_t* hash,
                                                   tactus_error* error);
 

@@ -170,7 +170,7 @@ TACTUS_API tactus_status tactus_client_submit(tactus_client* client, uint64_t no
                                               const tactus_device_contact* contact, tactus_error* error);
 /* In a scene with interest: where the user looks from, x y z [m, world], apart from the device; before _open, too, as an observer is sent
    all until it has reported it. tactus_receiver_levels shows what comes of it. What is not finite, or beyond 8000 km, does not count. */
-TACTUS_API tactus_status tactus_client_set_viewpoint(tactus_client* client, uint64_t now, const double* place, tactus_error* error);
+TACTUS_API tactus_status tactus_client_set_viewpoint(tactus_client* client, uint64_t now, const double* viewpoint, tactus_error* error);
 /* in   capacity  at least TACTUS_DATAGRAM_BYTES */
 TACTUS_API tactus_status tactus_client_poll_datagram(tactus_client* client, uint64_t now, uint8_t* bytes, size_t capacity,
                                                      size_t* size, tactus_error* error);

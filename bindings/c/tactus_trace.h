@@ -169,7 +169,7 @@ TACTUS_API tactus_status tactus_arrays_contact(tactus_arrays* arrays, const char
                                                int32_t kind, int32_t at_origin, tactus_error* error);
 /* Write a trace.   err  R-CSV-4, 5, 7, 8; R-TRC-1, 11, 17; R-API-1, 2 */
 TACTUS_API tactus_status tactus_arrays_write(tactus_arrays* arrays, const char* path, tactus_error* error);
-/* What _write decided: lines "where: what (count; first place)"; after an error the last one says where. Lives until the next call. */
+/* What _write decided: lines "where: what (count; first location)"; after an error the last one says where. Lives until the next call. */
 TACTUS_API const char* tactus_arrays_notes(const tactus_arrays* arrays);
 
 /* ---------------------------------------------------------------- errors of what a client shows */

@@ -39,9 +39,9 @@ std::uint32_t bits_of(const DeviceSenses& senses) noexcept {
   return (senses.orientation ? 1u : 0) | (senses.velocity ? 2u : 0) | (senses.buttons ? 4u : 0) | (senses.time ? 8u : 0);
 }
 
-std::uint32_t bits_of(KnownForces forces) noexcept {
-  if (forces == KnownForces::both) return TACTUS_FORCE_RENDERED | TACTUS_FORCE_SERVER;
-  return forces == KnownForces::rendered ? TACTUS_FORCE_RENDERED : TACTUS_FORCE_SERVER;
+std::uint32_t bits_of(RecordedForces forces) noexcept {
+  if (forces == RecordedForces::both) return TACTUS_FORCE_RENDERED | TACTUS_FORCE_SERVER;
+  return forces == RecordedForces::rendered ? TACTUS_FORCE_RENDERED : TACTUS_FORCE_SERVER;
 }
 
 void put(const Vec3& v, double (&out)[3]) noexcept {
@@ -150,7 +150,7 @@ std::string& error_words() noexcept {
 }
 
 tl::unexpected<Error> keep_words(const Diagnostic& error) {
-  const bool says_more = !place_of(error).empty() || !error.cause.empty() || !error.remedy.empty();
+  const bool says_more = !location_of(error).empty() || !error.cause.empty() || !error.remedy.empty();
   if (says_more) error_words() = to_string(error);
   return tl::unexpected(error.error);
 }

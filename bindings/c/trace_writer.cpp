@@ -95,9 +95,9 @@ tactus_status tactus_trace_writer_user(tactus_trace_writer* writer, const char* 
   return call(error, [&]() -> Outcome {
     TACTUS_CHECK(check_describing(writer, name));
     if (senses > 15 || forces == 0 || forces > 3) return fail(Errc::invalid_argument, "R-API-4");
-    const KnownForces known = forces == TACTUS_FORCE_RENDERED     ? KnownForces::rendered
-                              : forces == TACTUS_FORCE_SERVER ? KnownForces::server
-                                                              : KnownForces::both;
+    const RecordedForces known = forces == TACTUS_FORCE_RENDERED     ? RecordedForces::rendered
+                              : forces == TACTUS_FORCE_SERVER ? RecordedForces::server
+                                                              : RecordedForces::both;
     writer->info.users.push_back({.name = name, .senses = senses_of(senses), .forces = known});
     return TACTUS_OK;
   });

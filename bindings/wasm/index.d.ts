@@ -10,7 +10,7 @@ export class TactusError extends Error {
   readonly status: number;
   readonly errorClass: string;  // "malformed"
   readonly rule: string;        // "R-STR-4": of the specification
-  readonly bitOffset: bigint;   // place in the input
+  readonly bitOffset: bigint;   // position in the input
   readonly remedy: string;      // may be empty
   readonly advice: "none" | "drop" | "request key" | "close";
 }

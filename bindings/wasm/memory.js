@@ -71,7 +71,7 @@ export class Memory {
 
   field(struct, name, at) {
     const {type, offset, count} = layouts[struct].fields[name];
-    const one = (place) => (type in layouts ? this.struct(type, place) : this.view[readers[type]](place, true));
+    const one = (address) => (type in layouts ? this.struct(type, address) : this.view[readers[type]](address, true));
     if (count === 1) return one(at + offset);
     const size = layouts[type]?.size ?? sizes[type];
     return Array.from({length: count}, (_, i) => one(at + offset + i * size));

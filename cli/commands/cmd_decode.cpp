@@ -118,7 +118,7 @@ Outcome decode_all(Player& player, TraceWriter& writer, const TraceInfo& info, c
     if (!decoded && is_cut_stream(decoded.error()) && report.ticks.count() > 0) break;
     if (!decoded) return refuse_at(*tick, decoded.error(), options);
     if (const auto written = writer.write(frame); !written)
-      return refuse(options.output, place_of_tick(frame.tick), written.error());
+      return refuse(options.output, location_of_tick(frame.tick), written.error());
     if (figure != nullptr) figure->add(frame);
     if (shown) {
       shown->take(frame);

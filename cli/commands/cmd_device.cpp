@@ -109,11 +109,11 @@ tl::expected<std::optional<sim::Scene>, Failure> scene_of(const CaptureOptions& 
   return std::optional(std::move(*scene));
 }
 
-/// With a scene the loop runs as fast as the scene, and a device that paces must.
+/// With a scene the loop runs as fast as the scene, and a device with a clock of its own must.
 Outcome check_rate(const CaptureOptions& options, const device::Capabilities& device) {
   if (options.scene.empty()) return {};
-  const bool paces_otherwise = device.paces && std::abs(device.rate - sim::kTickRate) > 0.05 * sim::kTickRate;
-  if (options.rate == 0 && !paces_otherwise) return {};
+  const bool has_other_rate = device.has_clock && std::abs(device.rate - sim::kTickRate) > 0.05 * sim::kTickRate;
+  if (options.rate == 0 && !has_other_rate) return {};
   return refuse_arguments(
       options.rate != 0 ? "--rate: a scene has 1000 ticks per second"
                         : fmt::format("--scene: {} has {:.0f} samples per second, a scene 1000 ticks", device.name, device.rate),
@@ -133,7 +133,7 @@ Outcome run(const CaptureOptions& options) {
   TACTUS_TRY(const auto scene, scene_of(options, user));
   TACTUS_TRY(auto chosen, open_device(options.device, scene ? &*scene : nullptr, user));
   const device::Capabilities& can = chosen.device->capabilities();
-  if (scene) TACTUS_CHECK(check_place(can));
+  if (scene) TACTUS_CHECK(check_position(can));
   TACTUS_CHECK(check_rate(options, can));
   TACTUS_CHECK(check_force(options.device, can));
   TACTUS_TRY(auto output, OutputFile::create_growing(options.output, options.common.existing(), others));
@@ -173,7 +173,7 @@ void setup_capture(Command& app, Action& action) {
   command
       .add_option("--user", options->user, "The user of the scene whose hand it is [the first]; the others have virtual hands")
       ->type_name("NAME");
-  command.add_option("--rate", options->rate, "Ticks per second, of a device that does not pace [its own]")
+  command.add_option("--rate", options->rate, "Ticks per second, of a device without a clock [its own]")
       ->check(number(1, 10'000))
       ->type_name("HZ");
   add_quantity(command, "--duration", options->duration, Dimension::time, "End after this long [until q or Ctrl-C]")
@@ -220,7 +220,7 @@ const char* name_of(Exerted exerted) {
 }
 
 Outcome check_exerted(const PlayOptions& options, const device::Capabilities& device) {
-  TACTUS_CHECK(check_place(device));
+  TACTUS_CHECK(check_position(device));
   TACTUS_CHECK(check_force(options.device, device));
   if (options.exerted == Exerted::nothing || device.force_axes > 0) return {};
   return refuse_arguments(fmt::format("--exert {}: {} takes no force", name_of(options.exerted), device.name), "Leave it out.");
@@ -246,7 +246,7 @@ Outcome run(const PlayOptions& options) {
   const std::vector<std::string> others{options.trace, replayed_file(options.device)};
   if (!options.output.empty()) TACTUS_CHECK(OutputFile::check_free(options.output, options.common.existing(), others));
   auto recording =
-      device::Recording::read(options.trace, {.user = options.user, .pace = options.device.pace, .loops = options.device.loops});
+      device::Recording::read(options.trace, {.user = options.user, .playback_rate = options.device.playback_rate, .loops = options.device.loops});
   if (!recording) return refuse_recording(options, recording.error());
   TACTUS_TRY(auto chosen, open_device(options.device, nullptr, 0));
   const device::Capabilities& can = chosen.device->capabilities();
@@ -304,7 +304,7 @@ void setup_play(Command& app, Action& action) {
   command.footer(
       "Nothing is exerted without --exert. The recording begins where the handle is; q ends it. Recorded forces are right only\n"
       "where the hand was: hold the handle, and begin with a small --force-limit.\n"
-      "Examples:\n  tactus play hand.mcap --device falcon --exert path --pace 0.5\n"
+      "Examples:\n  tactus play hand.mcap --device falcon --exert path --playback-rate 0.5\n"
       "  tactus play hand.mcap --device openhaptics --exert force --force-limit 1N -o played.mcap");
   on_chosen<PlayOptions>(command, action, options, run);
 }

@@ -58,7 +58,7 @@ Outcome copy(TraceReader& reader, TraceWriter& writer, const CutOptions& options
     }
     frame.tick -= *base;
     if (const auto written = writer.write(frame); !written)
-      return refuse(options.output, place_of_tick(frame.tick), written.error());
+      return refuse(options.output, location_of_tick(frame.tick), written.error());
     report.ticks.add(frame.tick);
   }
 }
@@ -196,7 +196,7 @@ Outcome merge(std::vector<Part>& parts, TraceWriter& writer, const MergeOptions&
     TraceFrame all{.tick = tick, .objects = {}, .users = {}};
     for (Part& part : parts) append(part, all);
     const auto written = report.timings[0].times.measure([&] { return writer.write(all); });
-    if (!written) return refuse(options.output, place_of_tick(tick), written.error());
+    if (!written) return refuse(options.output, location_of_tick(tick), written.error());
     report.ticks.add(tick);
     progress.update(parts[0].frames);
     for (Part& part : parts) TACTUS_CHECK(part.advance());
@@ -268,7 +268,7 @@ struct ResampleOptions {
 Outcome write_due(Resampler& resampler, TraceFrame& frame, TraceWriter& writer, const ResampleOptions& options, Report& report) {
   while (resampler.next(frame)) {
     if (const auto written = writer.write(frame); !written)
-      return refuse(options.output, place_of_tick(frame.tick), written.error());
+      return refuse(options.output, location_of_tick(frame.tick), written.error());
     report.ticks.add(frame.tick);
   }
   return {};

@@ -162,7 +162,7 @@ Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, con
   while (true) {
     contacts.apply(frame);
     if (const auto done = encode_frame(session, frame, report); !done) {
-      return refuse(to_blame(done.error(), options), place_of_tick(frame.tick), done.error());
+      return refuse(to_blame(done.error(), options), location_of_tick(frame.tick), done.error());
     }
     progress.update(report.ticks.count());
     TACTUS_TRY(const bool more, next_frame(reader, frame, options.input));

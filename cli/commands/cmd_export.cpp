@@ -127,7 +127,7 @@ Outcome write_all(MotionSource& source, FoxgloveWriter& writer, const ExportFoxg
     TACTUS_TRY(const bool more, source.next(frame));
     if (!more) break;
     const auto written = report.timings[0].times.measure([&] { return writer.write(frame); });
-    if (!written) return refuse(options.output, place_of_tick(frame.tick), written.error());
+    if (!written) return refuse(options.output, location_of_tick(frame.tick), written.error());
     report.ticks.add(frame.tick);
     progress.update(report.ticks.count());
   }

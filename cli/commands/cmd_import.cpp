@@ -241,11 +241,11 @@ bool blames_arguments(const CsvMapping& mapping, std::string_view rule) {
 tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMapping& mapping, const Diagnostic& e) {
   const std::string& file = options.input;
   if (options.preset.empty() && options.maps.empty() && e.error.rule == std::string_view("R-CSV-2") &&
-      e.detail == place_of_field("tick", ""))
+      e.detail == location_of_field("tick", ""))
     return refuse_arguments(file + ": no columns are given",
                             "Give --preset NAME or --map position=x,y,z. Only tables of `tactus export csv` need neither.");
   const bool arguments = blames_arguments(mapping, e.error.rule);
-  auto refused = refuse(file, arguments ? e.detail : place_of(e), e.error);
+  auto refused = refuse(file, arguments ? e.detail : location_of(e), e.error);
   if (!e.remedy.empty()) refused.value().remedy = e.remedy;
   if (arguments) refused.value().cause = Failure::Cause::arguments;
   return refused;

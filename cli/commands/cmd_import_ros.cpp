@@ -22,7 +22,7 @@ Outcome copy(TraceReader& reader, TraceWriter& writer, const ImportRosOptions& o
     TACTUS_TRY(const bool more, next_frame(reader, frame, options.input));
     if (!more) return {};
     if (const auto written = writer.write(frame); !written)
-      return refuse(options.output, place_of_tick(frame.tick), written.error());
+      return refuse(options.output, location_of_tick(frame.tick), written.error());
     report.ticks.add(frame.tick);
   }
 }

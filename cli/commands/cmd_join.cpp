@@ -38,14 +38,14 @@ Json hashes_json(SessionClient& session) {
   return out;
 }
 
-Value value_of(const JoinOptions& options, SessionClient& session, const Visit& visit, const Pace& pace, double seconds,
+Value value_of(const JoinOptions& options, SessionClient& session, const Visit& visit, const TickTiming& timing, double seconds,
                const std::optional<SealUse>& seal) {
   const SessionStatus status = session.status();
   Json out{{"schema", "tactus.join/1"},
            {"server", options.server},
            {"role", options.participates() ? "participant" : "observer"},
            {"seconds", seconds},
-           {"pace", pace_value(pace)},
+           {"tick_timing", tick_timing_value(timing)},
            {"playout_delay_us", status.playout_delay},
            {"loss", status.loss},
            {"datagrams_refused", visit.refused},
@@ -90,7 +90,7 @@ Outcome take_part(const JoinOptions& options, SessionClient& session, Visit& vis
       ++live_ticks;
     }
     visit.send(now);
-    if (meter.is_due(now)) meter.draw(now, visit.meter_text(now, visit.pace(ticker).missed));
+    if (meter.is_due(now)) meter.draw(now, visit.meter_text(now, visit.tick_timing(ticker).missed));
   }
   return {};
 }
@@ -139,7 +139,7 @@ Outcome run(const JoinOptions& typed) {
     if (failure.signal = visit.closed ? 0 : StopOnSignal::caught(); failure.signal != 0) failure.cause = Failure::Cause::stopped;
     return tl::unexpected(std::move(failure));
   }
-  print(value_of(options, *session, visit, visit.pace(ticker), seconds, wire->seal()), "join", options.common);
+  print(value_of(options, *session, visit, visit.tick_timing(ticker), seconds, wire->seal()), "join", options.common);
   if (visit.lost > 0) {
     Failure failure{fmt::format("{}: {} lost", options.output, counted(visit.lost, "tick")), "Write to a faster disk."};
     failure.cause = Failure::Cause::bound;

@@ -110,7 +110,7 @@ Outcome write_frames(const sim::SurfaceSequence& sequence, const TriMesh& rest, 
       for (const double c : {u.x, u.y, u.z}) *out++ = static_cast<float>(c);
     }
     if (const auto written = writer.write(frame); !written)
-      return refuse(options.output, place_of_tick(frame.tick), written.error());
+      return refuse(options.output, location_of_tick(frame.tick), written.error());
     report.ticks.add(frame.tick);
     progress.update(k + 1);
   }

@@ -109,7 +109,7 @@ tl::expected<Rescue, Failure> copy(TraceReader& reader, TraceWriter& writer, con
     else if (!*more) rescue.cut_short = reader.cut_short();
     if (!more || !*more) break;
     if (const auto written = writer.write(frame); !written)
-      return refuse(options.output, place_of_tick(frame.tick), written.error());
+      return refuse(options.output, location_of_tick(frame.tick), written.error());
     const std::vector<ReadLoss>& lost = reader.losses();
     const auto now = static_cast<std::size_t>(
         std::count_if(lost.begin(), lost.end(), [](const ReadLoss& loss) { return loss.from.has_value(); }));

@@ -23,7 +23,7 @@
 #include "cli/live/service.h"
 #include "cli/live/ticker.h"
 #include "cli/live/wire.h"
-#include "cli/observe/monitor_door.h"
+#include "cli/observe/metrics_server.h"
 #include "cli/observe/observation.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_codec.h"
@@ -91,7 +91,7 @@ Json to_json(const ServeOptions& options, const SessionServer& sessions, const t
              const Ticker& ticker, double seconds, const ServerWire& wire) {
   const std::optional<SealUse> seal = wire.seal();
   Json out{{"schema", "tactus.serve/1"}, {"scene", options.scene}, {"listen", options.listen}, {"seconds", seconds}};
-  out["pace"] = pace_value(pace_of(ticker));
+  out["tick_timing"] = tick_timing_value(tick_timing_of(ticker));
   out["datagrams_refused"] = service.refused();
   out["datagrams_limited"] = wire.limited();
   if (seal) out["seal"] = seal_value(seal->counters);
@@ -144,7 +144,7 @@ struct Recording {
 TraceInfo info_of(const sim::Server& world) {
   TraceInfo out = world.info();
   out.source = "serve " + world.scene().name;
-  for (TraceUser& user : out.users) user.forces = KnownForces::server;  // clients send none
+  for (TraceUser& user : out.users) user.forces = RecordedForces::server;  // clients send none
   return out;
 }
 
@@ -212,7 +212,7 @@ class Strain {
 /// What a run is watched by.
 struct Watch {
   std::unique_ptr<Monitor> monitor;  // null: nobody asked for figures
-  std::unique_ptr<MonitorDoor> door;
+  std::unique_ptr<MetricsServer> metrics;
   ServiceManager manager;
 
   /// A tick has ended that began at `begun`.
@@ -250,7 +250,7 @@ Outcome open_watch(const ServeOptions& options, const sim::Server& world, Server
   facts.objects = world.stream_scene()->objects.size();
   facts.meshes = world.stream_scene()->deformables.size();
   watch.monitor = std::make_unique<Monitor>(options.clients);
-  TACTUS_TRY(watch.door, MonitorDoor::create(static_cast<std::uint16_t>(*options.metrics), *watch.monitor, std::move(facts)));
+  TACTUS_TRY(watch.metrics, MetricsServer::create(static_cast<std::uint16_t>(*options.metrics), *watch.monitor, std::move(facts)));
   return {};
 }
 
@@ -328,7 +328,7 @@ Outcome run(const ServeOptions& typed) {
   if (!sessions) return refuse(options.scene, sessions.error());
   if (!options.common.quiet) fmt::print(stderr, "serving {} at {}\n", options.scene, options.listen);
   if (!options.common.quiet && observation) fmt::print(stderr, "observe it at {}\n", observation->address());
-  if (!options.common.quiet && watch.door) fmt::print(stderr, "figures at {}\n", watch.door->address());
+  if (!options.common.quiet && watch.metrics) fmt::print(stderr, "figures at {}\n", watch.metrics->address());
 
   const auto form = options.log == "json"  ? EventLog::Form::json
                     : options.common.quiet ? EventLog::Form::none

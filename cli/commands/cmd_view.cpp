@@ -88,7 +88,7 @@ tl::expected<Json, Failure> truth_json(const ViewOptions& options, TraceReader& 
     if (cut && report.ticks.count() == 0) return refuse(options.input, *cut);
     if (cut) break;
     if (const auto added = data->add(frame, player.replica()); !added)
-      return refuse(options.truth, place_of_tick(frame.tick), added.error());
+      return refuse(options.truth, location_of_tick(frame.tick), added.error());
     if (data->bytes() > kMostPage) return too_large(options.truth, "is too long to lie beside the stream");
     report.ticks.add(frame.tick);
     progress.update(report.ticks.count());

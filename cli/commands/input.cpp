@@ -84,7 +84,7 @@ tl::expected<bool, Failure> next_frame(TraceReader& reader, TraceFrame& frame, c
 
 void warn_cut_stream(const std::string& path, const Error& error) {
   fmt::print(stderr, "warning: {}: the stream ends inside a record at {}; everything before the cut could be read\n",
-             shown_path(path), place_of_bit(error.bit_offset));
+             shown_path(path), location_of_bit(error.bit_offset));
 }
 
 Outcome check_ending(const std::string& path, const TraceReader& reader, std::uint64_t frames) {

@@ -62,7 +62,7 @@ class ReadProgress {
                                       : std::nullopt,
                   visibility) {}
   void update(std::uint64_t frames) {
-    constexpr std::uint64_t kBetween = 64;  // frames: the place in a file is not asked for at each
+    constexpr std::uint64_t kBetween = 64;  // frames: the position in a file is not asked for at each
     if (reader_ == nullptr) progress_.update(frames);
     else if (frames % kBetween == 0) progress_.update(reader_->bytes().read);
   }

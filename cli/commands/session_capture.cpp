@@ -7,7 +7,7 @@
 
 namespace tactus::cli {
 
-using Place = sim::Sighting::Place;
+using CapturePoint = sim::Sighting::CapturePoint;
 
 tl::expected<std::unique_ptr<SessionCapture>, Failure> SessionCapture::create(const std::string& path,
                                                                               OutputFile::Existing existing,
@@ -37,9 +37,9 @@ std::function<void(const sim::Sighting&)> SessionCapture::observer() {
 }
 
 void SessionCapture::add(const sim::Sighting& sighting) {
-  const bool at_client = sighting.place == Place::client_sends || sighting.place == Place::client_hears;
+  const bool at_client = sighting.point == CapturePoint::client_sends || sighting.point == CapturePoint::client_hears;
   if (error_ || at_client != (end_ == End::client)) return;
-  const bool up = sighting.place == Place::client_sends || sighting.place == Place::server_hears;
+  const bool up = sighting.point == CapturePoint::client_sends || sighting.point == CapturePoint::server_hears;
   const net::Ipv4Endpoint from = client(sighting.user), to = server();
   const auto added = writer_.add(sighting.time, up ? from : to, up ? to : from, sighting.datagram);
   if (!added) {

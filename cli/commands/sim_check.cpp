@@ -98,11 +98,11 @@ void CheckedTick::end(const TraceFrame& of_tick) {
   const bool begins = works.empty();
   works.resize(users);
   forces_.resize(users);
-  places_.resize(users);
+  positions_.resize(users);
   for (std::size_t i = 0; i < users; ++i) {
     const UserSample& user = of_tick.users[i];
-    if (!begins) works[i] -= dot(forces_[i], user.device.position - places_[i]);
-    places_[i] = user.device.position;
+    if (!begins) works[i] -= dot(forces_[i], user.device.position - positions_[i]);
+    positions_[i] = user.device.position;
     forces_[i] = user.force;
   }
 }

@@ -32,7 +32,7 @@ class CheckedTick {
 
  private:
   std::vector<Vec3> forces_;  // [N] on the hands in the tick before,
-  std::vector<Vec3> places_;  // [m] and where they were
+  std::vector<Vec3> positions_;  // [m] and where they were
 };
 
 class SimCheck {

@@ -36,9 +36,9 @@ tl::expected<std::span<const Packet>, Failure> step(SimRun& run, const SimOption
   const auto stepped = times.measure([&] { return run.recording ? run.simulation.step(run.devices) : run.simulation.step(); });
   if (stepped) return *stepped;
   Diagnostic error = stepped.error();
-  std::string place = place_of_tick(std::exchange(error.step, -1));
-  if (const std::string within = place_of(error); !within.empty()) place += ", " + within;
-  auto refused = refuse(options.scene, place, error.error);
+  std::string location = location_of_tick(std::exchange(error.step, -1));
+  if (const std::string within = location_of(error); !within.empty()) location += ", " + within;
+  auto refused = refuse(options.scene, location, error.error);
   if (!error.remedy.empty()) refused.value().remedy = error.remedy + '.';
   return refused;
 }
@@ -72,7 +72,7 @@ void judge_meshes(SimRun& run, Report& report) {
 Outcome record(SimRun& run, std::span<const Packet> packets, const SimOptions& options, Report& report) {
   const TraceFrame& frame = run.simulation.frame();
   if (const auto written = run.trace.write(frame); !written)
-    return refuse(options.output, place_of_tick(frame.tick), written.error());
+    return refuse(options.output, location_of_tick(frame.tick), written.error());
   TACTUS_CHECK(record_packets(run, packets, options, report));
   run.held.look(frame.tick, run.simulation.held());
   if (run.figure) run.figure->add(frame);

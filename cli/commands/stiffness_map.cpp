@@ -46,10 +46,10 @@ Outcome write_stiffness_map(const sim::Scene& scene, const std::string& scene_fi
       const Vec3& at = map->surface.vertices[v];
       *out << fmt::format("{},{},{},{},{},{}\n", csv_field(object.name), v, at.x, at.y, at.z, map->stiffness[v]);
     }
-    const std::filesystem::path place(file);
-    std::string name = place.stem().string() + (figures.empty() ? "" : "-" + object.name);
+    const std::filesystem::path base(file);
+    std::string name = base.stem().string() + (figures.empty() ? "" : "-" + object.name);
     std::replace(name.begin(), name.end(), '/', '_');
-    figures.emplace_back((place.parent_path() / (name + ".svg")).string(), figure_of(object.name, *map));
+    figures.emplace_back((base.parent_path() / (name + ".svg")).string(), figure_of(object.name, *map));
   }
   if (file == "-") figures.clear();
   for (const auto& [path, figure] : figures) {

@@ -10,7 +10,7 @@
 
 namespace tactus::cli {
 
-/// Write place at rest and stiffness of every vertex of the surfaces to FILE (CSV), and one figure per object beside it: as FILE is
+/// Write position at rest and stiffness of every vertex of the surfaces to FILE (CSV), and one figure per object beside it: as FILE is
 /// called for the first, with the object's name added for the others. Where figures cannot be drawn a note says so.
 /// in   others  files that the command needs besides
 /// err  a file cannot be written, or is there and to be kept; errors of stiffness_map() with the object

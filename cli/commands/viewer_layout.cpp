@@ -30,8 +30,8 @@ std::vector<Panel> panels_of(const TraceInfo& info) {
   for (const TraceUser& user : info.users) {
     const std::string topic = "/users/" + user.name;
     Panel& forces = out.emplace_back(Panel{"force on " + user.name + " [N]", {}});
-    if (user.forces != KnownForces::server) forces.curves.push_back({topic + "/force", "vector", "rendered"});
-    if (user.forces != KnownForces::rendered) forces.curves.push_back({topic + "/server_force", "vector", "server"});
+    if (user.forces != RecordedForces::server) forces.curves.push_back({topic + "/force", "vector", "rendered"});
+    if (user.forces != RecordedForces::rendered) forces.curves.push_back({topic + "/server_force", "vector", "server"});
     out.push_back({"device of " + user.name + " [m]", {{topic + "/device", "point", "device"}}});
   }
   for (const TraceObject& object : info.objects)

@@ -116,9 +116,9 @@ void MotionFigure::add_packet(std::int64_t tick, std::size_t bytes) {
   kilobits_.add(time_of(tick), kKilobits * static_cast<double>(bytes));
 }
 
-std::vector<Panel::Line> MotionFigure::force_lines(const UserLines& of, KnownForces known) {
-  if (known == KnownForces::server) return {{"of the server", of.server.points()}};
-  if (known == KnownForces::rendered) return {{"rendered", of.rendered.points()}};
+std::vector<Panel::Line> MotionFigure::force_lines(const UserLines& of, RecordedForces known) {
+  if (known == RecordedForces::server) return {{"of the server", of.server.points()}};
+  if (known == RecordedForces::rendered) return {{"rendered", of.rendered.points()}};
   if (!of.differ) return {{"force", of.rendered.points()}};
   return {{"rendered", of.rendered.points()}, {"of the server", of.server.points()}};
 }

@@ -81,7 +81,7 @@ class MotionFigure {
   double time_of(std::int64_t tick) const { return static_cast<double>(tick) / info_.tick_rate; }
   static void add(ObjectLines& lines, const RigidSample& sample, double time);
   static void add(UserLines& lines, const UserSample& user, double time);
-  static std::vector<Panel::Line> force_lines(const UserLines& of, KnownForces known);
+  static std::vector<Panel::Line> force_lines(const UserLines& of, RecordedForces known);
 
   TraceInfo info_;
   std::vector<ObjectLines> objects_;

@@ -159,7 +159,7 @@ void add_device_options(Command& command, DeviceArguments& arguments) {
   add_quantity(command, "--force-limit", arguments.force, Dimension::force, "Largest force [what the device can hold]")
       ->check(above_zero(Dimension::force));
   command.add_flag("--passivity", arguments.passivity, "Damp what the virtual object would give to the hand beyond what it took");
-  command.add_option("--pace", arguments.pace, "Of a recording: 0.5 is half as fast")
+  command.add_option("--playback-rate", arguments.playback_rate, "Of a recording: 0.5 is half as fast")
       ->check(number(0.001, 1000))
       ->show_default()
       ->type_name("FACTOR");
@@ -182,9 +182,9 @@ Outcome check_force(const DeviceArguments& arguments, const device::Capabilities
   return refuse_arguments(fmt::format("--force-limit: {} holds {:g} N", device.name, device.nominal_force), "Give at most that.");
 }
 
-Outcome check_place(const device::Capabilities& device) {
+Outcome check_position(const device::Capabilities& device) {
   if (!device.report_descriptor) return {};
-  return refuse_arguments(fmt::format("{}: what it reports is no place in space", device.name),
+  return refuse_arguments(fmt::format("{}: what it reports is no position in space", device.name),
                           "Record it with `tactus capture` without --scene.");
 }
 
@@ -197,7 +197,7 @@ tl::expected<ChosenDevice, Failure> open_device(const DeviceArguments& arguments
   const auto [backend, which] = split(arguments.name);
   if (backend == kVirtual) return open_virtual(arguments, which, scene, user);
   if (backend == kReplay) {
-    auto device = device::open_replay_device(which, {.user = {}, .pace = arguments.pace, .loops = arguments.loops});
+    auto device = device::open_replay_device(which, {.user = {}, .playback_rate = arguments.playback_rate, .loops = arguments.loops});
     if (!device) return refuse(device.error());
     return ChosenDevice{std::move(*device), nullptr, true};
   }

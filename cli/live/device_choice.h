@@ -57,7 +57,7 @@ struct DeviceArguments {
   device::OpenOptions open{};
   double force = 0;  ///< [N] 0: what the device can hold
   bool passivity = false;
-  double pace = 1;  ///< of a recording
+  double playback_rate = 1;  ///< of a recording
   bool loops = false;
   std::uint64_t seed = 1;  ///< of a virtual hand
 
@@ -71,8 +71,8 @@ std::string replayed_file(const DeviceArguments& arguments);
 /// err  the device cannot hold --force-limit
 Outcome check_force(const DeviceArguments& arguments, const device::Capabilities& device);
 
-/// err  the device has no place: its reports are only recorded
-Outcome check_place(const device::Capabilities& device);
+/// err  the device has no position: its reports are only recorded
+Outcome check_position(const device::Capabilities& device);
 
 /// What a device said, or the servo loop about it. Nothing of it is the operating system's.
 tl::unexpected<Failure> refuse_device(const std::string& name, const Error& error);

@@ -92,7 +92,7 @@ class DeviceLoop {
     std::optional<GuardReport> guard{};
     TraceRecorder::Status recorder{};
     std::uint64_t device_lost = 0;
-    std::uint64_t reports = 0;  ///< of a device that has no place
+    std::uint64_t reports = 0;  ///< of a device that has no position
     std::string privileges;
     std::int64_t last_tick = -1;
     double largest_force = 0;  ///< [N]

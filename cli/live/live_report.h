@@ -50,11 +50,11 @@ Value traffic_value(const Traffic& traffic, double seconds, const std::optional<
 Value seal_value(const seal::Counters& counters);
 Value round_trip_value(const RoundTrip& trip);
 /// How even the ticks of a program came.
-struct Pace {
+struct TickTiming {
   std::uint64_t ticks = 0, missed = 0;
   double p50 = 0, p99 = 0;  ///< [us] lateness
 };
-Pace pace_of(const Ticker& ticker);
-Value pace_value(const Pace& pace);
+TickTiming tick_timing_of(const Ticker& ticker);
+Value tick_timing_value(const TickTiming& timing);
 
 }  // namespace tactus::cli

@@ -19,15 +19,15 @@ std::string_view variable(const char* name) {
   return value == nullptr ? std::string_view() : value;
 }
 
-/// A datagram socket that is connected to this place, a path or, after @, an abstract name; below 0: it is not there.
-int connect_to(std::string_view place) {
+/// A datagram socket that is connected to this address, a path or, after @, an abstract name; below 0: it is not there.
+int connect_to(std::string_view name) {
   sockaddr_un address{};
-  if (place.size() < 2 || place.size() >= sizeof address.sun_path || (place[0] != '/' && place[0] != '@')) return -1;
+  if (name.size() < 2 || name.size() >= sizeof address.sun_path || (name[0] != '/' && name[0] != '@')) return -1;
   address.sun_family = AF_UNIX;
-  std::memcpy(address.sun_path, place.data(), place.size());
-  if (place[0] == '@') address.sun_path[0] = '\0';
+  std::memcpy(address.sun_path, name.data(), name.size());
+  if (name[0] == '@') address.sun_path[0] = '\0';
   const int handle = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + place.size());
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + name.size());
   if (handle < 0 || ::connect(handle, reinterpret_cast<const sockaddr*>(&address), size) == 0) return handle;
   ::close(handle);
   return -1;

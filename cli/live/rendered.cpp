@@ -10,7 +10,7 @@ namespace tactus::cli {
 
 TraceInfo RenderedNothing::info() const {
   TraceInfo info;
-  info.users.push_back({.name = "hand", .forces = KnownForces::rendered});
+  info.users.push_back({.name = "hand", .forces = RecordedForces::rendered});
   return info;
 }
 
@@ -36,7 +36,7 @@ RenderedRecording::RenderedRecording(device::Recording recording, Exerted exerte
 
 TraceInfo RenderedRecording::info() const {
   TraceInfo info;
-  info.users.push_back({.name = recording_.user().name, .forces = KnownForces::rendered});
+  info.users.push_back({.name = recording_.user().name, .forces = RecordedForces::rendered});
   return info;
 }
 
@@ -45,8 +45,8 @@ tl::expected<Vec3, Failure> RenderedRecording::step(const device::ServoTick& tic
   if (begin_ < 0 && tick.reading.state == device::Reading::State::valid) {
     begin_ = tick.due;
     origin_ = recording_.begin() - sample.position;
-    place_ = recording_.begin();
-    placed_ = tick.due;
+    position_ = recording_.begin();
+    position_at_ = tick.due;
   }
   sample.position = sample.position + origin_;
   frame.users.front().device = sample;
@@ -64,11 +64,11 @@ tl::expected<Vec3, Failure> RenderedRecording::step(const device::ServoTick& tic
 
 /// It grows from nothing, also when the recording begins again and the hand is far away.
 Vec3 RenderedRecording::spring(const Vec3& displacement, const Vec3& hand, Time into, Time now) noexcept {
-  if (now > placed_) {
-    const Vec3 speed = (1e9 / static_cast<double>(now - placed_)) * (hand - place_);
+  if (now > position_at_) {
+    const Vec3 speed = (1e9 / static_cast<double>(now - position_at_)) * (hand - position_);
     speed_ = speed_ + kSmoothing * (speed - speed_);
-    place_ = hand;
-    placed_ = now;
+    position_ = hand;
+    position_at_ = now;
   }
   const double fraction = std::min(static_cast<double>(into) / static_cast<double>(kGrowth), 1.0);
   return fraction * (stiffness_ * displacement - kDamping * speed_);

@@ -51,7 +51,7 @@ enum class Exerted : std::uint8_t {
   path,   ///< a spring draws the hand to where that of the recording was
 };
 
-/// A recording, played from the first sample on that the device has of its hand; both hands begin at the same place. The trace is in the
+/// A recording, played from the first sample on that the device has of its hand; both hands begin at the same position. The trace is in the
 /// recording's frame.
 class RenderedRecording final : public Rendered {
  public:
@@ -77,8 +77,8 @@ class RenderedRecording final : public Rendered {
   device::Time begin_ = -1;  // of the recording
   bool is_over_ = false;
   Vec3 origin_{};                 // [m] of the device's frame in the recording's
-  Vec3 place_{}, speed_{};        // [m], [m/s] of the hand at the tick before; the speed is smoothed
-  device::Time placed_ = 0;       // when the hand was there
+  Vec3 position_{}, speed_{};        // [m], [m/s] of the hand at the tick before; the speed is smoothed
+  device::Time position_at_ = 0;       // when the hand was there
   double sum_ = 0, largest_ = 0;  // [m]
   std::uint64_t ticks_ = 0;
 };

@@ -142,12 +142,12 @@ Outcome Service::make_tick(std::uint64_t now, std::optional<TraceWriter>& trace,
   Truth truth = world_.truth();
   if (frame.changed) truth.moved = *frame.changed;
   if (const auto sent = sessions_.submit(now, frame.tick, truth); !sent)
-    return refuse("session", place_of_tick(frame.tick), sent.error());
+    return refuse("session", location_of_tick(frame.tick), sent.error());
   log_held(frame.tick, now);
   send(now);
   if (observation_ != nullptr) observation_->offer(frame, truth.loads);
   if (trace)
-    if (const auto written = trace->write(frame); !written) return refuse(output, place_of_tick(frame.tick), written.error());
+    if (const auto written = trace->write(frame); !written) return refuse(output, location_of_tick(frame.tick), written.error());
   if (auto stepped = world_.step(); !stepped) return refuse(stepped.error());
   return {};
 }

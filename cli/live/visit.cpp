@@ -22,7 +22,7 @@ std::string names_of(const std::vector<sim::SceneUser>& users) {
   return out;
 }
 
-Pace pace_of(const device::ServoTimes& times) {
+TickTiming tick_timing_of(const device::ServoTimes& times) {
   const auto us = [&](double fraction) { return 1e-3 * static_cast<double>(times.lateness.quantile(fraction)); };
   return {times.ticks, times.missed, us(0.5), us(0.99)};
 }
@@ -51,7 +51,7 @@ tl::expected<Body, Failure> make_body(const JoinOptions& options) {
   if (!client) return refuse(options.scene, client.error());
   body.client = std::move(*client);
   TACTUS_TRY(body.chosen, open_device(options.device, &*scene, body.user));
-  TACTUS_CHECK(check_place(body.chosen.device->capabilities()));
+  TACTUS_CHECK(check_position(body.chosen.device->capabilities()));
   TACTUS_CHECK(check_force(options.device, body.chosen.device->capabilities()));
   if (!body.chosen.in_world) body.origin = scene->users[body.user].start;
   return body;
@@ -65,7 +65,9 @@ std::optional<GuardReport> Visit::guard() const {
   return body && body->servo ? guard_report(*body->servo, body->begin) : std::nullopt;
 }
 
-Pace Visit::pace(const Ticker& ticker) const { return body && body->servo ? pace_of(body->servo->times()) : pace_of(ticker); }
+TickTiming Visit::tick_timing(const Ticker& ticker) const {
+  return body && body->servo ? tick_timing_of(body->servo->times()) : tick_timing_of(ticker);
+}
 
 void Visit::note(const Error& error) {
   ++refused;
@@ -98,8 +100,10 @@ Outcome Visit::arrive() {
   if (body) {
     DeviceSenses senses = body->chosen.device->capabilities().senses;
     senses.buttons = true;
-    info.users.push_back(
-        {.name = body->shapes->scene().users[body->user].name, .senses = senses, .has_servo = true, .forces = KnownForces::rendered});
+    info.users.push_back({.name = body->shapes->scene().users[body->user].name,
+                          .senses = senses,
+                          .has_servo = true,
+                          .forces = RecordedForces::rendered});
   }
   frame_ = replica_frame(scene);
   frame_.users.resize(info.users.size());
@@ -229,7 +233,7 @@ Outcome Visit::close(std::uint64_t now) {
   if (!trace) return {};
   const auto done = trace->finish();
   const TraceRecorder::Status status = trace->status();
-  if (!done) return refuse(options_.output, status.error ? place_of_tick(status.last_written) : "", done.error());
+  if (!done) return refuse(options_.output, status.error ? location_of_tick(status.last_written) : "", done.error());
   lost = status.lost;
   return output->keep();
 }
@@ -291,7 +295,7 @@ Outcome Visit::record(std::uint64_t now) {
   const TraceRecorder::Status writing = trace->status();
   if (!writing.error) return {};
   errno = writing.cause;
-  return refuse(options_.output, place_of_tick(tick), *writing.error);
+  return refuse(options_.output, location_of_tick(tick), *writing.error);
 }
 
 Outcome Visit::step(std::uint64_t now) {

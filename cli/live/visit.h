@@ -69,7 +69,7 @@ class Visit {
 
   /// None: there is no device, or it takes no force.
   std::optional<GuardReport> guard() const;
-  Pace pace(const Ticker& ticker) const;
+  TickTiming tick_timing(const Ticker& ticker) const;
 
   std::optional<Body> body;
   std::optional<TraceRecorder> trace;

@@ -16,7 +16,7 @@
 
 #include "cli/live/live_report.h"
 #include "cli/observe/observed_stream.h"
-#include "cli/observe/web_door.h"
+#include "cli/observe/web_server.h"
 #include "cli/viewer/page.h"
 #include "cli/viewer/shapes.h"
 
@@ -37,9 +37,9 @@ class LiveObservation final : public Observation {
   LiveObservation(const Setup& setup, ObservedScene scene)
       : scene_(std::move(scene)),
         queue_(*setup.like, scene_.declared->loads ? scene_.declared->objects.size() : 0, setup.like->users.size()) {
-    const std::uint16_t port = door_.open(setup.port);
+    const std::uint16_t port = server_.open(setup.port);
     address_ = fmt::format("http://127.0.0.1:{}/", port);
-    door_.serve({.targets = {kPageTarget, kLiveTarget},
+    server_.serve({.targets = {kPageTarget, kLiveTarget},
                  .nothing = "There is / and nothing else.\n",
                  .page = [page = WebPage{live_page(port), "text/html; charset=utf-8"}](std::string_view) { return page; }});
     thread_ = std::thread([this] { work(); });
@@ -64,7 +64,7 @@ class LiveObservation final : public Observation {
   // The rest is of the thread, while it runs.
   asio::io_context context_{1};
   asio::steady_timer timer_{context_};
-  WebDoor door_{context_};
+  WebServer server_{context_};
   std::unique_ptr<ObservedStream> stream_;  // while somebody observes
   bool watches_ = false;
   std::thread thread_;
@@ -89,7 +89,7 @@ void LiveObservation::wait() {
 
 /// Nothing is coded while nobody looks.
 void LiveObservation::look() {
-  if (!door_.has_observers()) {
+  if (!server_.has_observers()) {
     if (std::exchange(watches_, false)) queue_.end_watch();
     stream_.reset();
     return;
@@ -109,7 +109,7 @@ Result<void> LiveObservation::take_ticks() {
     queue_.pop();
   }
   ObservedStream::Batch batch = stream_->take(queue_.left_out());
-  door_.send(std::make_shared<const std::string>(std::move(batch.text)), batch.is_key, stream_->hello());
+  server_.send(std::make_shared<const std::string>(std::move(batch.text)), batch.is_key, stream_->hello());
   return {};
 }
 
@@ -117,12 +117,12 @@ void LiveObservation::end(const std::string& why) {
   failure_ = why;
   if (std::exchange(watches_, false)) queue_.end_watch();
   timer_.cancel();
-  door_.close(std::make_shared<const std::string>(end_text(why)));
+  server_.close(std::make_shared<const std::string>(end_text(why)));
 }
 
 /// When all observers have heard it, or do not in time.
 void LiveObservation::leave(int farewells) {
-  if (farewells == 0 || !door_.has_observers()) return context_.stop();
+  if (farewells == 0 || !server_.has_observers()) return context_.stop();
   timer_.expires_after(kFarewell);
   timer_.async_wait([this, farewells](const boost::system::error_code&) { leave(farewells - 1); });
 }
@@ -131,12 +131,12 @@ ObservationReport LiveObservation::finish() {
   if (thread_.joinable()) {
     asio::post(context_, [this] {
       timer_.cancel();
-      door_.close(std::make_shared<const std::string>(end_text("the server has ended")));
+      server_.close(std::make_shared<const std::string>(end_text("the server has ended")));
       leave(kFarewells);
     });
     thread_.join();
   }
-  const WebDoor::Counts& counts = door_.counts();
+  const WebServer::Counts& counts = server_.counts();
   return {address_,          counts.observers, counts.most_at_a_time, counts.too_slow, counts.requests_refused,
           queue_.left_out(), failure_};
 }

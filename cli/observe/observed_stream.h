@@ -89,7 +89,7 @@ class ObservedStream {
     std::string text;
     bool is_key = false;  ///< an observer can begin with it
   };
-  /// The ticks since the last call; once a second it is a place to begin at, which carries the hashes of the states behind it.
+  /// The ticks since the last call; once a second it is a key tick, to begin at, which carries the hashes of the states behind it.
   /// in   left_out  ticks so far that did not get here
   Batch take(std::uint64_t left_out);
 

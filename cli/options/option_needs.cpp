@@ -77,7 +77,7 @@ constexpr std::array kNeeds{
     Need{"--haptic-share", Subject::touched_mesh},
     Need{"--layered", Subject::touched_mesh},
     // simulation
-    Need{"--pace", Subject::user},
+    Need{"--duration-scale", Subject::user},
     Need{"--tremor", Subject::user},
     Need{"--rate", Subject::deformed},
     Need{"--method", Subject::deformable},
@@ -160,12 +160,12 @@ void check_options_agree(const Command& command) {
   }
 }
 
-void note_idle_options(const Command& command, const std::set<Subject>& held, const std::string& place) {
+void note_idle_options(const Command& command, const std::set<Subject>& held, const std::string& source) {
   for (const Need& need : kNeeds) {
     const Option* option = typed(command, need.option);
     if (!option || held.contains(need.subject) || (need.value && option->last() != need.value)) continue;
     fmt::print(stderr, "note: {}{}{} has no effect: this {} has {}\n", need.option, need.value ? " " : "",
-               need.value ? need.value : "", place, lack_of(need.subject));
+               need.value ? need.value : "", source, lack_of(need.subject));
   }
 }
 

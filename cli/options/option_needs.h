@@ -23,6 +23,6 @@ std::set<Subject> subjects_of(const TraceInfo& info);
 void check_options_agree(const Command& command);
 
 /// Say on standard error which of the options that were typed find nothing to work on.   in  place  "trace", "scene"
-void note_idle_options(const Command& command, const std::set<Subject>& held, const std::string& place);
+void note_idle_options(const Command& command, const std::set<Subject>& held, const std::string& source);
 
 }  // namespace tactus::cli

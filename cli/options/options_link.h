@@ -62,12 +62,12 @@ inline Option* add_grip(Command& command, std::string& grip, const std::string& 
 }
 
 // ==== hand option ====
-// The options --grip, --pace and --tremor of commands that simulate.
+// The options --grip, --duration-scale and --tremor of commands that simulate.
 
 /// in  otherwise  what holds without it, for the help
-inline Option* add_pace(Command& command, double& pace, const std::string& otherwise) {
+inline Option* add_duration_scale(Command& command, double& scale, const std::string& otherwise) {
   return command
-      .add_option("--pace", pace,
+      .add_option("--duration-scale", scale,
                   "Time that hands take for each movement, times the scene's: 0.5 is twice as fast [" + otherwise + "]")
       ->check(number(0.1, 10))
       ->type_name("FACTOR");
@@ -83,19 +83,19 @@ class HandArguments {
  public:
   void add_to(Command& command) {
     add_grip(command, grip_, "the scene's");
-    pace_option_ = add_pace(command, pace_, "1");
+    scale_option_ = add_duration_scale(command, duration_scale_, "1");
     tremor_option_ = add_tremor(command, tremor_, "the scene's");
   }
   void apply(sim::Scene& scene) const {
-    if (pace_option_->count() > 0) sim::set_pace(scene, pace_);
+    if (scale_option_->count() > 0) sim::scale_durations(scene, duration_scale_);
     if (tremor_option_->count() > 0) sim::set_tremor(scene, tremor_);
   }
   std::optional<sim::Grip> grip() const { return grip_.empty() ? std::nullopt : std::optional(grip_of(grip_)); }
 
  private:
   std::string grip_;
-  double pace_ = 1, tremor_ = 0;  // [m]
-  const Option *pace_option_ = nullptr, *tremor_option_ = nullptr;
+  double duration_scale_ = 1, tremor_ = 0;  // [m]
+  const Option *scale_option_ = nullptr, *tremor_option_ = nullptr;
 };
 
 // ==== compensation option ====

@@ -70,10 +70,10 @@ Json without_fractions(Json traffic) {
   return traffic;
 }
 
-Json forces_json(KnownForces known) {
+Json forces_json(RecordedForces known) {
   Json out = Json::array();
-  if (known != KnownForces::server) out.push_back("rendered");
-  if (known != KnownForces::rendered) out.push_back("server");
+  if (known != RecordedForces::server) out.push_back("rendered");
+  if (known != RecordedForces::rendered) out.push_back("server");
   return out;
 }
 

@@ -12,10 +12,10 @@
 namespace tactus::cli {
 namespace {
 
-tl::unexpected<Failure> refuse_with(std::string text, const std::string& file, const std::string& place, const Error& error) {
+tl::unexpected<Failure> refuse_with(std::string text, const std::string& file, const std::string& location, const Error& error) {
   auto refused = refuse(std::move(text), "");
   refused.value().file = file;
-  refused.value().place = place;
+  refused.value().location = location;
   refused.value().error_class = errc_name(error.code);
   refused.value().rule = error.rule;
   return refused;
@@ -23,39 +23,39 @@ tl::unexpected<Failure> refuse_with(std::string text, const std::string& file, c
 
 }  // namespace
 
-std::string place_of_bit(std::uint64_t bit_offset) {
+std::string location_of_bit(std::uint64_t bit_offset) {
   if (bit_offset == 0) return {};
   if (bit_offset % 8 == 0) return fmt::format("byte {}", bit_offset / 8);
   return fmt::format("byte {}, bit {}", bit_offset / 8, bit_offset % 8);
 }
 
-tl::unexpected<Failure> refuse(const std::string& file, const std::string& place, const Error& error) {
+tl::unexpected<Failure> refuse(const std::string& file, const std::string& location, const Error& error) {
   const int cause = error.code == Errc::io ? errno : 0;
   auto refused =
-      refuse_with(fmt::format("{}{}{}: {}{}{} ({}, {})", shown_path(file), place.empty() ? "" : ", ", place, describe(error),
+      refuse_with(fmt::format("{}{}{}: {}{}{} ({}, {})", shown_path(file), location.empty() ? "" : ", ", location, describe(error),
                               cause == 0 ? "" : ": ", cause == 0 ? "" : std::generic_category().message(cause),
                               errc_name(error.code), error.rule),
-                  file, place, error);
+                  file, location, error);
   refused.value().remedy = cause == 0 ? remedy(error) : remedy_of(cause);
   return refused;
 }
 
 tl::unexpected<Failure> refuse(const Diagnostic& error) {
-  return refuse_with(to_string(error), error.file, place_of(error), error.error);
+  return refuse_with(to_string(error), error.file, location_of(error), error.error);
 }
 
 tl::unexpected<Failure> refuse(const std::string& file, const Diagnostic& error) {
-  const std::string place = place_of(error);
-  auto refused = refuse(file, place, error.error);
+  const std::string location = location_of(error);
+  auto refused = refuse(file, location, error.error);
   if (!error.cause.empty())
-    refused.value().text = fmt::format("{}{}{}: {} ({}, {})", shown_path(file), place.empty() ? "" : ", ", place, error.cause,
+    refused.value().text = fmt::format("{}{}{}: {} ({}, {})", shown_path(file), location.empty() ? "" : ", ", location, error.cause,
                                        errc_name(error.error.code), error.error.rule);
   if (!error.remedy.empty()) refused.value().remedy = error.remedy;
   return refused;
 }
 
 tl::unexpected<Failure> refuse(const std::string& file, const Error& error) {
-  return refuse(file, place_of_bit(error.bit_offset), error);
+  return refuse(file, location_of_bit(error.bit_offset), error);
 }
 
 std::string remedy_of(int cause) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What went wrong, in words: file, place, rule and a remedy. The sentences of rules are those of spec/rules.csv.
+/// What went wrong, in words: file, location, rule and a remedy. The sentences of rules are those of spec/rules.csv.
 #pragma once
 
 #include <cstdint>
@@ -19,24 +19,24 @@ struct Failure {
   Cause cause = Cause::work;
   int signal = 0;  ///< that stopped the work
   /// Of what the text says, as far as it says them: for --json.
-  std::string file{}, place{}, error_class{}, rule{};
+  std::string file{}, location{}, error_class{}, rule{};
 };
 using Outcome = tl::expected<void, Failure>;
 
 /// Escapes control characters in every line. Callers already escape foreign text; this is a second safeguard.
 std::string printable(std::string_view message);
 
-/// Place of a bit in a file: "byte 132" or "byte 132, bit 3"; empty for 0.
-std::string place_of_bit(std::uint64_t bit_offset);
-inline std::string place_of_tick(std::int64_t tick) { return "tick " + std::to_string(tick); }
+/// Location of a bit in a file: "byte 132" or "byte 132, bit 3"; empty for 0.
+std::string location_of_bit(std::uint64_t bit_offset);
+inline std::string location_of_tick(std::int64_t tick) { return "tick " + std::to_string(tick); }
 
-/// A library's error about `file`, at `place` (may be empty).
-tl::unexpected<Failure> refuse(const std::string& file, const std::string& place, const Error& error);
-/// The same with the place that the error itself carries.
+/// A library's error about `file`, at `location` (may be empty).
+tl::unexpected<Failure> refuse(const std::string& file, const std::string& location, const Error& error);
+/// The same with the location that the error itself carries.
 tl::unexpected<Failure> refuse(const std::string& file, const Error& error);
-/// An error of a recording, with all that its reader knows of place, cause and remedy.
+/// An error of a recording, with all that its reader knows of location, cause and remedy.
 tl::unexpected<Failure> refuse(const std::string& file, const Diagnostic& error);
-/// An error of a text or a simulation with its place: one line, the remedy included.
+/// An error of a text or a simulation with its location: one line, the remedy included.
 tl::unexpected<Failure> refuse(const Diagnostic& error);
 /// What to do about an operation on a file that failed for this reason (errno).
 std::string remedy_of(int cause);

@@ -109,12 +109,12 @@ struct Block {
   std::vector<Row> rows{};
 
   bool is_list() const { return columns.size() == 1 && columns[0].empty(); }
-  bool has_row(const std::string& sought) const { return places_.contains(sought); }
+  bool has_row(const std::string& sought) const { return indices_.contains(sought); }
   void add(const std::string& row, const std::string& label, const std::string& column, const std::string& text) {
     if (std::ranges::find(columns, column) == columns.end()) columns.push_back(column);
-    const auto [place, is_new] = places_.try_emplace(row, rows.size());
+    const auto [at, is_new] = indices_.try_emplace(row, rows.size());
     if (is_new) rows.push_back({label});
-    std::string& cell = rows[place->second].cells[column];
+    std::string& cell = rows[at->second].cells[column];
     cell += (cell.empty() || text.starts_with(' ') ? "" : ", ") + text;
   }
   /// To a row that is there, in a column before the others.
@@ -124,11 +124,11 @@ struct Block {
   }
 
  private:
-  std::map<std::string, std::size_t> places_{};  // of rows
+  std::map<std::string, std::size_t> indices_{};  // of rows
 };
 
 /// Where what is walked over stands.
-struct Place {
+struct Context {
   std::string block, name{};  // name: of the element around
   std::optional<std::string> row{}, column{};
   std::string row_label{}, prefix{};  // prefix: of columns
@@ -139,15 +139,15 @@ struct Place {
 class Layout {
  public:
   Layout(const Json& value, const Json& schema) { object(value, schema, {.block = text_at(schema, "x-block")}); }
-  void object(const Json& value, const Json& schema, const Place& place);
+  void object(const Json& value, const Json& schema, const Context& context);
   void print(std::FILE* out) const;
 
  private:
-  void member(const Json& value, const Json& schema, const Place& place);
+  void member(const Json& value, const Json& schema, const Context& context);
   void texts(const Json& value, const Json& schema, Block& to, const std::string& title);
-  void rows(const Json& value, const Json& schema, const Place& place);
-  void elements(const Json& value, const Json& schema, const Place& place);
-  void leaf(const Json& value, const Json& schema, const Place& place, const std::string& title);
+  void rows(const Json& value, const Json& schema, const Context& context);
+  void elements(const Json& value, const Json& schema, const Context& context);
+  void leaf(const Json& value, const Json& schema, const Context& context, const std::string& title);
   Block& block(const std::string& title) {
     const auto found = std::ranges::find(blocks_, title, &Block::key);
     return found == blocks_.end() ? blocks_.emplace_back(title) : *found;
@@ -185,23 +185,23 @@ const Json& chosen(const Json& value, const Json& schema) {
   return schema;
 }
 
-void Layout::object(const Json& value, const Json& schema, const Place& place) {
-  for_each_member(value, chosen(value, schema), [&](const Json& part, const Json& property) { member(part, property, place); });
+void Layout::object(const Json& value, const Json& schema, const Context& context) {
+  for_each_member(value, chosen(value, schema), [&](const Json& part, const Json& property) { member(part, property, context); });
 }
 
-void Layout::member(const Json& value, const Json& schema, const Place& place) {
+void Layout::member(const Json& value, const Json& schema, const Context& context) {
   const std::string& as = text_at(schema, "x-as");
-  const std::string title = filled(text_at(schema, "title"), place.name);
+  const std::string title = filled(text_at(schema, "title"), context.name);
   if (schema.value("x-hidden", false) || as == "name" || (schema.contains("x-omit") && schema["x-omit"] == value)) return;
   if (const std::string note = text_at(schema, "x-note"); !note.empty() && std::ranges::find(notes_, note) == notes_.end())
     notes_.push_back(note);
-  if (as == "heading" || as == "sentence" || as == "lines") return texts(value, schema, block(place.block), title);
-  Place inner = place;
-  if (schema.contains("x-block")) inner.block = filled(schema["x-block"], place.name);
+  if (as == "heading" || as == "sentence" || as == "lines") return texts(value, schema, block(context.block), title);
+  Context inner = context;
+  if (schema.contains("x-block")) inner.block = filled(schema["x-block"], context.name);
   const bool is_cell = as == "cell" || !value.is_structured();
   if (is_cell || (value.is_array() && !schema["items"].contains("properties"))) return leaf(value, schema, inner, title);
   const bool has_block = !title.empty() && !schema.contains("x-block") && as != "row" && as != "column" && as != "joins" &&
-                         as != "columns" && !place.row;
+                         as != "columns" && !context.row;
   if (has_block && value.is_object()) inner.block = title;
   if (as == "row") {
     inner.row = title;
@@ -210,7 +210,7 @@ void Layout::member(const Json& value, const Json& schema, const Place& place) {
   } else if (as == "column" || as == "joins") {
     inner.column = title;
     inner.joins = as == "joins";
-  } else if (place.row && value.is_object() && !title.empty()) {
+  } else if (context.row && value.is_object() && !title.empty()) {
     inner.prefix += title + " ";
   }
   if (value.is_array()) elements(value, schema, inner);
@@ -227,15 +227,15 @@ void Layout::texts(const Json& value, const Json& schema, Block& to, const std::
     for (std::size_t i = 0; i < value.size(); ++i) to.add(title + std::to_string(i), title, "", value[i]);
 }
 
-void Layout::rows(const Json& value, const Json& schema, const Place& place) {
+void Layout::rows(const Json& value, const Json& schema, const Context& context) {
   for_each_member(value, schema, [&](const Json& part, Json property) {
-    if (!part.is_structured()) return member(part, property, place);
+    if (!part.is_structured()) return member(part, property, context);
     property["x-as"] = "row";
-    member(part, property, place);
+    member(part, property, context);
   });
 }
 
-void Layout::elements(const Json& value, const Json& schema, const Place& place) {
+void Layout::elements(const Json& value, const Json& schema, const Context& context) {
   const Json& items = schema["items"];
   const std::string &as = text_at(schema, "x-as"), &title = text_at(schema, "title");
   std::size_t number = 0;
@@ -244,15 +244,15 @@ void Layout::elements(const Json& value, const Json& schema, const Place& place)
     for_each_member(element, items, [&](const Json& part, const Json& property) {
       if (text_at(property, "x-as") == "name") name += (name.empty() ? "" : ", ") + text_of(part, property, With::unit);
     });
-    Place at = place;
+    Context at = context;
     if (as == "columns") {
       at.column = name;
     } else if (as == "blocks") {
-      at.name = place.name.empty() ? name : name + " at " + place.name;
+      at.name = context.name.empty() ? name : name + " at " + context.name;
       at.block = filled(title, at.name);
     } else {
-      if (!title.empty() && !schema.contains("x-block")) at.block = filled(title, place.name);
-      at.row = fmt::format("{}/{}", place.row.value_or(""), number++);
+      if (!title.empty() && !schema.contains("x-block")) at.block = filled(title, context.name);
+      at.row = fmt::format("{}/{}", context.row.value_or(""), number++);
       at.row_label = name;
       at.row_schema = &schema;
     }
@@ -269,21 +269,21 @@ std::string plain_text(const Json& value, const Json& schema, const Json* row) {
   return text_of(value, of_row, With::nothing);
 }
 
-void Layout::leaf(const Json& value, const Json& schema, const Place& place, const std::string& title) {
-  if (place.joins) {
-    const auto found = std::ranges::find(blocks_, place.block, &Block::key);
-    if (found != blocks_.end() && found->has_row(title)) found->join(title, *place.column, text_of(value, schema, With::unit));
+void Layout::leaf(const Json& value, const Json& schema, const Context& context, const std::string& title) {
+  if (context.joins) {
+    const auto found = std::ranges::find(blocks_, context.block, &Block::key);
+    if (found != blocks_.end() && found->has_row(title)) found->join(title, *context.column, text_of(value, schema, With::unit));
     return;
   }
   const std::string &own = text_at(schema, "x-row"), &column = text_at(schema, "x-column");
-  const std::string row = own.empty() ? title : filled(own, place.name);
-  const auto plain = [&] { return plain_text(value, schema, place.row_schema); };
-  Block& to = block(place.block);
-  if (place.row && place.column) return to.add(*place.row, place.row_label, *place.column, plain());
-  if (place.row && schema.contains("x-column"))
-    return to.add(*place.row, place.row_label, column, column.empty() ? text_of(value, schema, With::unit) : plain());
-  if (place.row) return to.add(*place.row, place.row_label, place.prefix + labelled(title, schema), plain());
-  if (place.column) return to.add(row, labelled(row, schema), *place.column, plain());
+  const std::string row = own.empty() ? title : filled(own, context.name);
+  const auto plain = [&] { return plain_text(value, schema, context.row_schema); };
+  Block& to = block(context.block);
+  if (context.row && context.column) return to.add(*context.row, context.row_label, *context.column, plain());
+  if (context.row && schema.contains("x-column"))
+    return to.add(*context.row, context.row_label, column, column.empty() ? text_of(value, schema, With::unit) : plain());
+  if (context.row) return to.add(*context.row, context.row_label, context.prefix + labelled(title, schema), plain());
+  if (context.column) return to.add(row, labelled(row, schema), *context.column, plain());
   const bool is_count = !column.empty() && schema.contains("x-count");
   to.add(row, row, column, is_count ? plain() : text_of(value, schema, With::unit));
 }
@@ -376,13 +376,13 @@ Json resolved(const Json& node, const Json& root) {
 
 const Json& schema(const std::string& name) {
   static std::map<std::string, Json> read;
-  const auto [place, is_new] = read.try_emplace(name);
+  const auto [entry, is_new] = read.try_emplace(name);
   if (is_new) {
-    place->second =
+    entry->second =
         Json::parse(std::ranges::find(kSchemas, std::string_view(name), &std::pair<const char*, const char*>::first)->second);
-    place->second = resolved(place->second, place->second);
+    entry->second = resolved(entry->second, entry->second);
   }
-  return place->second;
+  return entry->second;
 }
 
 void print_table(const Json& value, const Json& schema, std::FILE* out) { Layout(value, schema).print(out); }

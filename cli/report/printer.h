@@ -10,8 +10,8 @@
 ///   x-omit              a value that is not worth a row
 ///   x-hidden            only in JSON
 ///   x-note              a sentence below all tables, if the property is there
-///   x-block, x-row, x-column    where it stands, instead of a place of its own; values in one place are joined
-///   x-as                of objects   "rows": one for each member; "row", "column": one for it as a whole; "cell": all in one place;
+///   x-block, x-row, x-column    where it stands, instead of a cell of its own; values in one cell are joined
+///   x-as                of objects   "rows": one for each member; "row", "column": one for it as a whole; "cell": all in one cell;
 ///                                    "joins": a first column, of rows that are there
 ///                       of arrays    "blocks": one for each element; "columns"; "cell"; of texts "lines", "sentence"; else a table with a row for each
 ///                       of texts     "heading" of the report; "name" of the element; "sentence" below all tables

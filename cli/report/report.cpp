@@ -486,7 +486,7 @@ std::string error_json(const Failure& failure) {
   Json error{{"text", failure.text}};
   for (const auto& [name, value] :
        {std::pair("remedy", &Failure::remedy), std::pair("class", &Failure::error_class), std::pair("rule", &Failure::rule),
-        std::pair("file", &Failure::file), std::pair("place", &Failure::place)})
+        std::pair("file", &Failure::file), std::pair("location", &Failure::location)})
     if (!(failure.*value).empty()) error[name] = failure.*value;
   return text_of_json({{"schema", "tactus.error/1"}, {"error", std::move(error)}});
 }

@@ -246,7 +246,7 @@ struct Report {
   std::pair<std::uint64_t, std::uint64_t> bytes_and_packets() const;
 };
 
-/// Make place for what is sent of a trace's meshes and how far it is off.
+/// Make room for what is sent of a trace's meshes and how far it is off.
 void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const TriggerArguments& triggers, Report& report);
 
 /// Which bounds are broken, where and how often: "position in 12 of 1000 ticks"; empty when all hold.

@@ -32,7 +32,7 @@ namespace tactus::cli {
 struct Report;
 
 /// One TouchReport for each user, and a warning for each that chatters, swings while it should hold still, feels far less than the server's force, presses a deformable object harder than eq. 4.38 allows at
-/// the place of the largest force, or was held by a coupling that its device's smoothing makes swing.
+/// the position of the largest force, or was held by a coupling that its device's smoothing makes swing.
 /// in   has_network  the clients are behind one
 void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, bool has_network, Report& report);
 /// Warns on standard error of two users at one object who simulate it at a distance where they may swing.

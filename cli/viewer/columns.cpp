@@ -106,7 +106,7 @@ constexpr double kFraction = 0.05;  // of the stream's bounds
 // What the grid of every stream can hold.
 constexpr double kLeastLength = 4e-6, kLeastAngle = 1e-4;  // [m], [rad]
 
-constexpr const char* kKnown[] = {"both", "rendered", "server"};  // index: KnownForces
+constexpr const char* kKnown[] = {"both", "rendered", "server"};  // index: RecordedForces
 
 enum class Touch : std::uint8_t { none = 0, surface = 1, spring = 2, mesh = 3 };
 
@@ -117,7 +117,7 @@ Touch touch_of(const UserSample& user) {
 }
 
 /// Where a user touches.
-Vec3 place_of(const UserSample& user, const TraceFrame& frame, Touch touch) {
+Vec3 contact_point_of(const UserSample& user, const TraceFrame& frame, Touch touch) {
   if (touch == Touch::mesh) return user.surface_contact->proxy;
   return to_world(frame.objects[user.contact.object].pose, user.contact.point);
 }
@@ -179,7 +179,7 @@ void TruthData::add_users(const TraceFrame& frame, const std::vector<Pose>& show
     const Touch touch = touch_of(user);
     users_[i].device.add(user.device.position);
     users_[i].kind.add(static_cast<std::int64_t>(touch));
-    users_[i].contact.add(touch == Touch::none ? user.device.position : place_of(user, frame, touch));
+    users_[i].contact.add(touch == Touch::none ? user.device.position : contact_point_of(user, frame, touch));
     users_[i].server.add(user.server_force);
     users_[i].rendered.add(user.force);
     const bool is_rigid = touch == Touch::surface || touch == Touch::spring;
@@ -257,14 +257,14 @@ nlohmann::ordered_json TruthData::take() {
   out["users"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < users_.size(); ++i) {
     User& user = users_[i];
-    const KnownForces known = info_.users[i].forces;
+    const RecordedForces known = info_.users[i].forces;
     nlohmann::ordered_json entry{{"name", info_.users[i].name},
                                  {"knows", kKnown[static_cast<std::size_t>(known)]},
                                  {"kind", user.kind.take()},
                                  {"device", user.device.take()},
                                  {"contact", user.contact.take()}};
-    if (known != KnownForces::rendered) entry["server"] = user.server.take();
-    if (known == KnownForces::rendered || (known == KnownForces::both && user.differ)) entry["rendered"] = user.rendered.take();
+    if (known != RecordedForces::rendered) entry["server"] = user.server.take();
+    if (known == RecordedForces::rendered || (known == RecordedForces::both && user.differ)) entry["rendered"] = user.rendered.take();
     if (moves) entry["shown"] = user.shown.take();
     out["users"].push_back(std::move(entry));
   }

@@ -109,7 +109,7 @@ class PacketLog {
   static Result<PacketLog> create(const SharedScene& scene, const SenderOptions& options);
   /// err  of Sender::encode, Receiver::push
   Result<void> add(std::int64_t tick, const Truth& truth);
-  /// The next packet of every substream is a place to begin at.
+  /// The next packet of every substream is a key packet, to begin at.
   void request_key() noexcept { sender_.request_key(); }
   Replica& replica() noexcept { return receiver_.replica(); }
   const Scene& scene() const noexcept { return *sender_.scene(); }

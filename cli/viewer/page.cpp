@@ -11,7 +11,7 @@ extern "C" const char tactus_page_begin[], tactus_page_end[];
 namespace tactus::cli {
 namespace {
 
-constexpr std::string_view kPlace = "<!--tactus-data-->", kConnect = "connect-src 'none'";
+constexpr std::string_view kDataMarker = "<!--tactus-data-->", kConnect = "connect-src 'none'";
 
 }  // namespace
 
@@ -34,17 +34,17 @@ std::string page_json(const nlohmann::ordered_json& data) {
 
 void write_page(std::ostream& out, std::string_view data) {
   const std::string_view page = page_template();
-  const std::size_t at = page.find(kPlace);
+  const std::size_t at = page.find(kDataMarker);
   out << page.substr(0, at) << R"(<script id="tactus-data" type="application/json">)" << data << "</script>"
-      << page.substr(at + kPlace.size());
+      << page.substr(at + kDataMarker.size());
 }
 
 std::string live_page(std::uint16_t port) {
   std::ostringstream page;
   write_page(page, R"({"live":true})");
   std::string text = page.str();
-  const std::string places = fmt::format("connect-src ws://127.0.0.1:{0} ws://localhost:{0}", port);
-  text.replace(text.find(kConnect), kConnect.size(), places);
+  const std::string sources = fmt::format("connect-src ws://127.0.0.1:{0} ws://localhost:{0}", port);
+  text.replace(text.find(kConnect), kConnect.size(), sources);
   return text;
 }
 

@@ -10,7 +10,7 @@
 
 namespace tactus::cli {
 
-/// The page with its own place for the data.
+/// The page with its own marker for the data.
 std::string_view page_template() noexcept;
 
 /// The data as text that ends no element of the page, whatever names it holds.

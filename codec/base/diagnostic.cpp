@@ -9,7 +9,7 @@
 namespace tactus {
 namespace {
 
-constexpr std::size_t kMostOfDetail = 160;  // a place in our words and pieces of the file
+constexpr std::size_t kMostOfDetail = 160;  // a location in our words and pieces of the file
 constexpr std::size_t kMostOfRemedy = 400;  // it may repeat what is in the file
 
 /// From the large to the small, without the line; some are empty.
@@ -30,7 +30,7 @@ std::string as_clause(std::string_view sentence) {
 
 }  // namespace
 
-std::string place_of(const Diagnostic& diagnostic) {
+std::string location_of(const Diagnostic& diagnostic) {
   std::string out = diagnostic.line > 0 ? "line " + std::to_string(diagnostic.line) : "";
   for (const std::string& part : parts_of(diagnostic))
     if (!part.empty()) out += (out.empty() ? "" : ", ") + part;

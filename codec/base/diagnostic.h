@@ -31,7 +31,7 @@ tl::expected<T, Diagnostic> diagnosed(Result<T> result) {
 }
 
 /// The location within the file: "line 3, triangle 17, column y, 'oops'"; may be empty.
-std::string place_of(const Diagnostic& diagnostic);
+std::string location_of(const Diagnostic& diagnostic);
 
 /// One line: "m.obj:3: triangle 17: R-SRF-11: an edge belongs to a third triangle; remove the surplus element or take the mesh
 /// apart there". Text from the file is escaped for terminals (shown.h).

@@ -51,7 +51,7 @@ inline tl::unexpected<Error> fail(Errc code, RuleName rule, std::uint64_t bit_of
   return tl::unexpected<Error>(Error{code, rule, bit_offset});
 }
 
-/// The same error at another place of the input.
+/// The same error at another position of the input.
 inline tl::unexpected<Error> fail_at(const Error& error, std::uint64_t bit_offset) noexcept {
   return tl::unexpected<Error>(Error{error.code, error.rule, bit_offset});
 }

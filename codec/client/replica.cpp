@@ -101,9 +101,9 @@ bool HeardPackets::all_between(std::uint64_t first, std::uint64_t last) const no
   return true;
 }
 
-// ==== bend ====
+// ==== gap interpolation ====
 
-RigidPose bend(const Scene& scene, const RigidState& a, const RigidState& b, std::int64_t tick) noexcept {
+RigidPose interpolate_gap(const Scene& scene, const RigidState& a, const RigidState& b, std::int64_t tick) noexcept {
   const RigidPredictor predictor(scene);
   const std::int64_t whole = b.tick - a.tick;
   const std::int64_t fraction = round_div((tick - a.tick) << 30, whole);
@@ -202,7 +202,7 @@ RigidPose Replica::path_from(std::uint32_t object, const Timelines::Update& a, s
   const Timelines::Update* const b = a.next != Timelines::kNone ? &timelines_[a.next] : nullptr;
   const bool is_whole = b == nullptr || a.number == 0 || a.state.lod == kOutOfInterest || b->state.tick == a.state.tick ||
                         b->state.tick - a.state.tick > reach_ || heard_.all_between(a.number, b->number);
-  return is_whole ? predictor_.shown(object, a.state, tick) : bend(scene_, a.state, b->state, tick);
+  return is_whole ? predictor_.shown(object, a.state, tick) : interpolate_gap(scene_, a.state, b->state, tick);
 }
 
 /// What was left to go at the tick of an update: from the updates before it, back to one whose own smoothing was over when the next came.

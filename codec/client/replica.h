@@ -82,13 +82,13 @@ class HeardPackets {
   std::uint64_t newest_ = 0;  // 0: none
 };
 
-// ==== bend ====
+// ==== gap interpolation ====
 // The path of an object between two updates when a packet between them is missing. spec/60-client.md section 7.
 
 /// A cubic that leaves `a` and meets `b` with their velocities; a straight line where these are 0.
 /// Its error grows with the fourth power of the time between, that of dead reckoning with the second.
 /// pre  a.tick <= tick <= b.tick, a.tick < b.tick, b.tick - a.tick <= max_extrapolation.   time about 0.5 us, no allocation.
-RigidPose bend(const Scene& scene, const RigidState& a, const RigidState& b, std::int64_t tick) noexcept;
+RigidPose interpolate_gap(const Scene& scene, const RigidState& a, const RigidState& b, std::int64_t tick) noexcept;
 
 // ==== replica ====
 
@@ -97,7 +97,7 @@ enum class Interpolation : std::uint8_t {
   linear,    ///< over t_N, the difference to the new state fades at constant rate (WI): a straight line; thesis eqs. 3.4-3.6
   hermite,   ///< the same on a cubic that keeps the velocity at both ends; thesis eq. 3.7
   blending,  ///< the difference fades at constant rate, the old velocity in a cubic (projective velocity blending); thesis eq. 3.8
-  playout,   ///< the client shows ticks in the past, by a playout delay of its choice, and bends over gaps that losses leave
+  playout,   ///< the client shows ticks in the past, by a playout delay of its choice, and interpolates over gaps that losses leave
 };
 
 /// The heuristic for t_N: `fraction` of the mean of the last 5 inter-arrival times, clipped. An update during a running interpolation
@@ -175,7 +175,7 @@ class Replica {
   Interpolation interpolation_ = Interpolation::none;
   std::uint32_t fraction_ = 0;  // x 2^-16
   std::int64_t shortest_ = 0, longest_ = 0;
-  std::int64_t reach_ = 0;     // [ticks] longest gap to bend over
+  std::int64_t reach_ = 0;     // [ticks] longest gap to interpolate over
   std::vector<Track> tracks_;  // empty with playout
   Timelines timelines_;        // of no object without
   HeardPackets heard_;

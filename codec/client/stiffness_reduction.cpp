@@ -29,8 +29,8 @@ void StiffnessReduction::move(const Vec3& device) noexcept {
 Vec3 StiffnessReduction::displacement(std::uint32_t round_trip) const noexcept {
   if (known_ == 0) return {};
   const std::size_t back = std::min<std::size_t>(round_trip, known_ - 1);
-  const auto place = [this](std::size_t ago) -> const Vec3& { return path_[(next_ + path_.size() - 1 - ago) % path_.size()]; };
-  return place(0) - place(back);
+  const auto position = [this](std::size_t ago) -> const Vec3& { return path_[(next_ + path_.size() - 1 - ago) % path_.size()]; };
+  return position(0) - position(back);
 }
 
 double StiffnessReduction::filtered(double wanted) noexcept {

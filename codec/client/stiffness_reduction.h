@@ -67,7 +67,7 @@ class StiffnessReduction {
   /// err  invalid_argument R-API-4: options; limit_exceeded R-API-11
   static Result<StiffnessReduction> create(const Options& options);
 
-  /// The device's place at the next tick [m].   time O(1), no allocation
+  /// The device's position at the next tick [m].   time O(1), no allocation
   void move(const Vec3& device) noexcept;
   /// The stiffness [N/m] for this tick.
   /// in   round_trip [ticks]; what is longer than most_delay, or than the path that is known, counts as that

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Decoder of deformable objects: profile main, and the door to both profiles. Internal to the library.
+/// Decoder of deformable objects: profile main, and the interface to both profiles. Internal to the library.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Encoder of deformable objects: profile main, and the door to both profiles. Internal to the library.
+/// Encoder of deformable objects: profile main, and the interface to both profiles. Internal to the library.
 #pragma once
 
 #include <cstddef>

@@ -25,7 +25,7 @@ struct MainModels {
   MagnitudeModel baseline, tick, late;
   std::array<BitModel, 2> touched;  // context: the baseline's packet was touched
   BitModel same_triangle, near_triangle;
-  TreeModel<6> near_place;
+  TreeModel<6> near_index;
   MagnitudeModel haptic;
   BitModel same_visual;
   MagnitudeModel visual;
@@ -101,7 +101,7 @@ void code_main_start(Coder& coder, MainModels& models, const DeformableObject& o
   head.tick_delta = static_cast<std::uint32_t>(std::max<std::int64_t>(0, period + late));
 }
 
-/// The touched triangle: the same, a place in the rings around the last one, or its number. The number may be out of range.
+/// The touched triangle: the same, an index into the rings around the last one, or its number. The number may be out of range.
 template <class Coder>
 std::uint32_t code_triangle(Coder& coder, MainModels& models, const DeformableObject& object, Rings& rings, std::uint32_t last,
                             std::uint32_t triangle) noexcept {
@@ -110,11 +110,11 @@ std::uint32_t code_triangle(Coder& coder, MainModels& models, const DeformableOb
     if (coder.bit(models.same_triangle, triangle == last ? 1u : 0u)) return last;
     auto near = rings.triangles_around(last, 2).subspan(1);
     near = near.first(std::min<std::size_t>(near.size(), kNear));
-    std::uint32_t place = 0;
-    while (place < near.size() && near[place] != triangle) ++place;
-    if (coder.bit(models.near_triangle, place < near.size() ? 1u : 0u)) {
-      place = coder.template tree<6>(models.near_place, place);
-      return place < near.size() ? near[place] : kNoTriangle;
+    std::uint32_t index = 0;
+    while (index < near.size() && near[index] != triangle) ++index;
+    if (coder.bit(models.near_triangle, index < near.size() ? 1u : 0u)) {
+      index = coder.template tree<6>(models.near_index, index);
+      return index < near.size() ? near[index] : kNoTriangle;
     }
   }
   const auto bits = static_cast<unsigned>(std::bit_width(object.triangles.size() - 1));

@@ -64,9 +64,9 @@ void DrivenShape::forget_what_changed() noexcept {
   revision_ = path_.revision();
   const std::int64_t ticks = solver_.ticks(), oldest = newest_ - static_cast<std::int64_t>(frames_.size()) + 1;
   for (std::int64_t n = std::max(first_, oldest); n < newest_ + (is_broken_ ? 1 : 0); ++n) {
-    const std::vector<Place>& places = frame(n).places;
+    const std::vector<Position>& positions = frame(n).positions;
     for (std::int64_t i = 0; i < ticks; ++i) {
-      if (path_.at(n * ticks + i) == places[static_cast<std::size_t>(i)]) continue;
+      if (path_.at(n * ticks + i) == positions[static_cast<std::size_t>(i)]) continue;
       newest_ = n;
       is_broken_ = false;
       return;
@@ -87,12 +87,12 @@ bool DrivenShape::push() noexcept {
   bool pushed = false;
   ElasticTouch::State touch = now.touch;
   for (std::int64_t i = 0; i < ticks; ++i) {
-    const Place place = now.places[static_cast<std::size_t>(i)] = path_.at(newest_ * ticks + i);
-    if (!place) {
+    const Position position = now.positions[static_cast<std::size_t>(i)] = path_.at(newest_ * ticks + i);
+    if (!position) {
       touch = {};
       continue;
     }
-    const Vec3 at{unit * (*place)[0], unit * (*place)[1], unit * (*place)[2]};
+    const Vec3 at{unit * (*position)[0], unit * (*position)[1], unit * (*position)[2]};
     const auto push = touch_.move(at, i == 0, surface_, touch);
     if (!push) continue;
     pushed = true;

@@ -48,14 +48,14 @@ class DrivenShape final : public FollowedShape {
   void follow(std::int64_t tick) noexcept override { advance(tick / solver_.ticks()); }
 
  private:
-  using Place = std::optional<Vec3i>;
+  using Position = std::optional<Vec3i>;
   /// A shape, and what the device did while it was there.
   struct Frame {
-    explicit Frame(const ElasticSolver& solver) : state(solver.vertices()), places(solver.ticks()) {}
+    explicit Frame(const ElasticSolver& solver) : state(solver.vertices()), positions(solver.ticks()) {}
     ElasticState state;
     bool moves = false;  // by itself
     ElasticTouch::State touch;
-    std::vector<Place> places;  // by tick
+    std::vector<Position> positions;  // by tick
   };
 
   Frame& frame(std::int64_t number) noexcept { return frames_[static_cast<std::size_t>(number) % frames_.size()]; }

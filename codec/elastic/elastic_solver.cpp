@@ -46,7 +46,7 @@ ElasticSolver::ElasticSolver(const Scene& scene, const DeformableObject& object)
       ahead_(u_.size()),
       force_(u_.size()),
       start_(u_.size()),
-      pace_(u_.size()),
+      begun_(u_.size()),
       residual_(3 * elimination_.order.size()),
       z_(residual_.size()),
       direction_(residual_.size()),
@@ -119,7 +119,7 @@ void ElasticSolver::solve_round(std::span<const double> load) noexcept {
     const std::uint32_t v = elimination_.order[i / 3];
     const std::size_t at = 3 * std::size_t{v} + i % 3;
     const double speed = (u_[at] - start_[at]) / reach_;
-    residual_[i] = -(elements_.mass()[v] * (rate * speed - pace_[at] / reach_) + force_[at] - load[at]);
+    residual_[i] = -(elements_.mass()[v] * (rate * speed - begun_[at] / reach_) + force_[at] - load[at]);
   }
   std::ranges::fill(direction_, 0);
   double before = 0;
@@ -139,15 +139,15 @@ void ElasticSolver::solve_round(std::span<const double> load) noexcept {
   }
 }
 
-/// u_ = end of the stage that begins with start_ and pace_, from u_ on.
+/// u_ = end of the stage that begins with start_ and begun_, from u_ on.
 void ElasticSolver::solve_stage(std::span<const double> load) noexcept {
   for (int round = 0; round < kRounds; ++round) solve_round(load);
 }
 
 void ElasticSolver::backward_euler(std::span<const double> load, ElasticState& state) noexcept {
   start_ = state.displacement;
-  pace_ = state.velocity;
-  for (std::size_t i = 0; i < u_.size(); ++i) u_[i] = start_[i] + step_ * pace_[i];
+  begun_ = state.velocity;
+  for (std::size_t i = 0; i < u_.size(); ++i) u_[i] = start_[i] + step_ * begun_[i];
   solve_stage(load);
   for (std::size_t i = 0; i < u_.size(); ++i) state.velocity[i] = (u_[i] - start_[i]) / step_;
   state.displacement = u_;
@@ -161,7 +161,7 @@ void ElasticSolver::tr_bdf2(std::span<const double> load, ElasticState& state) n
   for (const std::uint32_t v : elimination_.order) {
     for (std::size_t i = 3 * std::size_t{v}; i < 3 * std::size_t{v} + 3; ++i) {
       start_[i] = u[i] + reach_ * w[i];
-      pace_[i] = left * w[i] + reach_ * (load[i] - k[i]) / elements_.mass()[v];
+      begun_[i] = left * w[i] + reach_ * (load[i] - k[i]) / elements_.mass()[v];
       u_[i] = u[i] + g * step_ * w[i];
     }
   }
@@ -169,14 +169,14 @@ void ElasticSolver::tr_bdf2(std::span<const double> load, ElasticState& state) n
   for (std::size_t i = 0; i < u_.size(); ++i) {
     const double speed = (u_[i] - start_[i]) / reach_;
     start_[i] = fresh * u_[i] - old * u[i];
-    pace_[i] = fresh * speed - old * w[i];
+    begun_[i] = fresh * speed - old * w[i];
     u_[i] += (1 - g) * step_ * speed;
   }
   solve_stage(load);
   for (const std::uint32_t v : elimination_.order) {
     for (std::size_t i = 3 * std::size_t{v}; i < 3 * std::size_t{v} + 3; ++i) {
       w[i] = (u_[i] - start_[i]) / reach_;
-      k[i] = load[i] - elements_.mass()[v] * (rate * w[i] - pace_[i]) / reach_;
+      k[i] = load[i] - elements_.mass()[v] * (rate * w[i] - begun_[i]) / reach_;
     }
   }
   u = u_;

@@ -53,19 +53,19 @@ ElasticTouch::ElasticTouch(const DeformableObject& object) : object_(object) {
   }
 }
 
-ElasticTouch::Foot ElasticTouch::foot(const Vec3& place, std::uint32_t triangle, std::span<const Vec3> vertices) const noexcept {
+ElasticTouch::Foot ElasticTouch::foot(const Vec3& position, std::uint32_t triangle, std::span<const Vec3> vertices) const noexcept {
   const auto& [i, j, k] = object_.triangles[triangle];
-  Foot out{.triangle = triangle, .weights = nearest_weights(place, vertices[i], vertices[j], vertices[k]), .point = {}};
+  Foot out{.triangle = triangle, .weights = nearest_weights(position, vertices[i], vertices[j], vertices[k]), .point = {}};
   out.point = blend(out.weights, vertices[i], vertices[j], vertices[k]);
-  const Vec3 away = place - out.point;
+  const Vec3 away = position - out.point;
   out.distance2 = dot(away, away);
   return out;
 }
 
-ElasticTouch::Foot ElasticTouch::nearest(const Vec3& place, std::span<const Vec3> vertices) const noexcept {
-  Foot best = foot(place, 0, vertices);
+ElasticTouch::Foot ElasticTouch::nearest(const Vec3& position, std::span<const Vec3> vertices) const noexcept {
+  Foot best = foot(position, 0, vertices);
   for (std::uint32_t t = 1; t < object_.triangles.size(); ++t)
-    if (const Foot other = foot(place, t, vertices); other.distance2 < best.distance2 || std::isnan(best.distance2)) best = other;
+    if (const Foot other = foot(position, t, vertices); other.distance2 < best.distance2 || std::isnan(best.distance2)) best = other;
   return best;
 }
 
@@ -78,16 +78,16 @@ bool ElasticTouch::meets(std::uint32_t triangle, const Foot& foot) const noexcep
 }
 
 /// From triangle to triangle, each time to one that holds the foot, as long as that leads nearer.
-ElasticTouch::Foot ElasticTouch::descend(const Vec3& place, std::uint32_t triangle,
+ElasticTouch::Foot ElasticTouch::descend(const Vec3& position, std::uint32_t triangle,
                                          std::span<const Vec3> vertices) const noexcept {
-  Foot at = foot(place, triangle, vertices);
+  Foot at = foot(position, triangle, vertices);
   for (int i = 0; i < kMostSteps; ++i) {
     Foot best = at;
     std::size_t corner = 0;
     while (corner < 2 && at.weights[corner] == 0) ++corner;
     for (const std::uint32_t t : triangles_of_[object_.triangles[at.triangle][corner]]) {
       if (t == at.triangle || !meets(t, at)) continue;
-      if (const Foot other = foot(place, t, vertices); other.distance2 < best.distance2) best = other;
+      if (const Foot other = foot(position, t, vertices); other.distance2 < best.distance2) best = other;
     }
     if (best.triangle == at.triangle) break;
     at = best;
@@ -95,57 +95,57 @@ ElasticTouch::Foot ElasticTouch::descend(const Vec3& place, std::uint32_t triang
   return at;
 }
 
-bool ElasticTouch::is_inside(const Vec3& place, const Foot& foot, std::span<const Vec3> vertices) const noexcept {
+bool ElasticTouch::is_inside(const Vec3& position, const Foot& foot, std::span<const Vec3> vertices) const noexcept {
   const auto& [a, b, c] = object_.triangles[foot.triangle];
-  return dot(place - foot.point, cross(vertices[b] - vertices[a], vertices[c] - vertices[a])) < 0;
+  return dot(position - foot.point, cross(vertices[b] - vertices[a], vertices[c] - vertices[a])) < 0;
 }
 
 /// Where the path of the device met the surface, given its foot after.
-ElasticTouch::Foot ElasticTouch::met(const Vec3& place, const Foot& foot, std::span<const Vec3> vertices,
+ElasticTouch::Foot ElasticTouch::met(const Vec3& position, const Foot& foot, std::span<const Vec3> vertices,
                                      const State& state) const noexcept {
   if (!state.last) return foot;
   const auto& [i, j, k] = object_.triangles[foot.triangle];
   const Vec3 n = cross(vertices[j] - vertices[i], vertices[k] - vertices[i]);
-  const double over = dot(*state.last - vertices[i], n), under = dot(place - vertices[i], n);
+  const double over = dot(*state.last - vertices[i], n), under = dot(position - vertices[i], n);
   if (!(over > 0)) return foot;
-  return descend(*state.last + (over / (over - under)) * (place - *state.last), foot.triangle, vertices);
+  return descend(*state.last + (over / (over - under)) * (position - *state.last), foot.triangle, vertices);
 }
 
 /// Where friction holds the proxy: Coulomb's cone over the plane of the triangle that held it.
-ElasticTouch::Foot ElasticTouch::hold(const Vec3& place, std::span<const Vec3> vertices, const State& state) const noexcept {
+ElasticTouch::Foot ElasticTouch::hold(const Vec3& position, std::span<const Vec3> vertices, const State& state) const noexcept {
   const auto& [i, j, k] = object_.triangles[*state.triangle];
   const Vec3 &a = vertices[i], &b = vertices[j], &c = vertices[k];
   const Foot held{.triangle = *state.triangle, .weights = state.weights, .point = blend(state.weights, a, b, c)};
-  const Vec3 n = cross(b - a, c - a), base = place - (dot(place - held.point, n) / dot(n, n)) * n;
+  const Vec3 n = cross(b - a, c - a), base = position - (dot(position - held.point, n) / dot(n, n)) * n;
   const Vec3 lag = held.point - base;
-  const double far = norm(lag), rim = object_.body->friction * norm(place - base);
+  const double far = norm(lag), rim = object_.body->friction * norm(position - base);
   if (far <= rim) return held;
   return descend(base + (rim / far) * lag, held.triangle, vertices);
 }
 
-std::optional<ElasticTouch::Push> ElasticTouch::move(const Vec3& place, bool anew, std::span<const Vec3> vertices,
+std::optional<ElasticTouch::Push> ElasticTouch::move(const Vec3& position, bool anew, std::span<const Vec3> vertices,
                                                      State& state) const noexcept {
   if (object_.triangles.empty()) return std::nullopt;
   const bool touched = state.touches;
-  Foot at = descend(place, state.triangle ? *state.triangle : nearest(place, vertices).triangle, vertices);
-  state.touches = is_inside(place, at, vertices);
+  Foot at = descend(position, state.triangle ? *state.triangle : nearest(position, vertices).triangle, vertices);
+  state.touches = is_inside(position, at, vertices);
   if (anew && !touched && !state.touches && state.triangle) {
-    at = descend(place, nearest(place, vertices).triangle, vertices);
-    state.touches = is_inside(place, at, vertices);
+    at = descend(position, nearest(position, vertices).triangle, vertices);
+    state.touches = is_inside(position, at, vertices);
   }
   if (state.touches && object_.body->friction > 0) {
     if (!touched) {
-      const Foot first = met(place, at, vertices, state);
+      const Foot first = met(position, at, vertices, state);
       state.triangle = first.triangle;
       state.weights = first.weights;
     }
-    at = hold(place, vertices, state);
+    at = hold(position, vertices, state);
   }
   state.triangle = at.triangle;
   state.weights = at.weights;
-  state.last = place;
+  state.last = position;
   if (!state.touches) return std::nullopt;
-  return Push{at.triangle, at.weights, object_.body->coupling * (place - at.point)};
+  return Push{at.triangle, at.weights, object_.body->coupling * (position - at.point)};
 }
 
 }  // namespace tactus

@@ -37,10 +37,10 @@ class ElasticTouch {
   explicit ElasticTouch(const DeformableObject& object);
 
   /// Move the device. With `anew` one that is free is also held against the nearest triangle of all.
-  /// in   place     [m]
+  /// in   position     [m]
   ///      vertices  [m] of the object, where they are now
   /// time 0.1 us, anew 15 ns per triangle; no allocation
-  std::optional<Push> move(const Vec3& place, bool anew, std::span<const Vec3> vertices, State& state) const noexcept;
+  std::optional<Push> move(const Vec3& position, bool anew, std::span<const Vec3> vertices, State& state) const noexcept;
 
  private:
   struct Foot {
@@ -49,13 +49,13 @@ class ElasticTouch {
     Vec3 point;
     double distance2 = 0;
   };
-  Foot foot(const Vec3& place, std::uint32_t triangle, std::span<const Vec3> vertices) const noexcept;
-  Foot nearest(const Vec3& place, std::span<const Vec3> vertices) const noexcept;
-  Foot descend(const Vec3& place, std::uint32_t triangle, std::span<const Vec3> vertices) const noexcept;
+  Foot foot(const Vec3& position, std::uint32_t triangle, std::span<const Vec3> vertices) const noexcept;
+  Foot nearest(const Vec3& position, std::span<const Vec3> vertices) const noexcept;
+  Foot descend(const Vec3& position, std::uint32_t triangle, std::span<const Vec3> vertices) const noexcept;
   bool meets(std::uint32_t triangle, const Foot& foot) const noexcept;
-  bool is_inside(const Vec3& place, const Foot& foot, std::span<const Vec3> vertices) const noexcept;
-  Foot met(const Vec3& place, const Foot& foot, std::span<const Vec3> vertices, const State& state) const noexcept;
-  Foot hold(const Vec3& place, std::span<const Vec3> vertices, const State& state) const noexcept;
+  bool is_inside(const Vec3& position, const Foot& foot, std::span<const Vec3> vertices) const noexcept;
+  Foot met(const Vec3& position, const Foot& foot, std::span<const Vec3> vertices, const State& state) const noexcept;
+  Foot hold(const Vec3& position, std::span<const Vec3> vertices, const State& state) const noexcept;
 
   const DeformableObject& object_;
   ListOfLists<std::uint32_t> triangles_of_;  // by vertex, ascending

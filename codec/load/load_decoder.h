@@ -39,7 +39,7 @@ class LoadDecoder {
   LoadModels models_;
   LoadHead head_;
   std::vector<LoadStep> steps_;       // of one object
-  std::vector<std::size_t> objects_;  // pending, by their place in Scene::moving()
+  std::vector<std::size_t> objects_;  // pending, by their index in Scene::moving()
   std::vector<Vec3i> vectors_;        // of these
 };
 

@@ -80,7 +80,7 @@ LoadEncoder::LoadEncoder(const Scene& scene, const LoadThresholds& thresholds, B
 void LoadEncoder::set_link(const LinkState& link) noexcept {
   if (!is_acknowledged_) return;
   const auto soon = static_cast<std::int64_t>(std::ceil(kSoon * scene_.tick_rate));
-  answer_ = link.answer > 0 && link.loss >= kSomeLoss ? std::min(link.answer, soon) : link.answer;
+  ack_timeout_ = link.ack_timeout > 0 && link.loss >= kSomeLoss ? std::min(link.ack_timeout, soon) : link.ack_timeout;
 }
 
 /// At `fraction` of the permitted error, for the unrounded truth.
@@ -102,7 +102,7 @@ bool LoadEncoder::is_out(std::size_t object, const LoadState& state, double frac
 void LoadEncoder::collect(const EncodeRequest<LoadState>& request) noexcept {
   pending_.clear();
   const std::size_t objects = scene_.moving().size();
-  bool fires = request.requested || (!acknowledged_ && answer_ > 0 && request.tick - sent_ >= answer_);
+  bool fires = request.requested || (!acknowledged_ && ack_timeout_ > 0 && request.tick - sent_ >= ack_timeout_);
   for (std::size_t i = 0; i < objects && !fires; ++i) fires = is_out(i, request.shown, 1);
   if (!fires) return;
   for (std::size_t i = 0; i < objects; ++i)

@@ -49,14 +49,14 @@ class SpringNetwork {
 
  private:
   struct Spring {
-    std::array<std::uint32_t, 2> ends;  // places in `members`
+    std::array<std::uint32_t, 2> ends;  // indices into `members`
     std::array<double, 3> direction;
   };
 
   void find_bound(std::size_t members);
 
   std::vector<Spring> springs_;
-  std::vector<std::uint32_t> fixed_;  // places
+  std::vector<std::uint32_t> fixed_;  // indices
   double bound_ = 1;
 };
 

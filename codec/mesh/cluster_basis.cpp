@@ -150,13 +150,13 @@ ModeBasis cluster_basis(const DeformableObject& object) {
     out.cluster_entries.close();
   }
   std::vector<std::vector<Member>> members(count);
-  std::vector<std::vector<std::uint32_t>> places(count);  // in out.cluster_entries.items
-  std::uint32_t place = 0;
+  std::vector<std::vector<std::uint32_t>> indices(count);  // in out.cluster_entries.items
+  std::uint32_t index = 0;
   for (std::uint32_t v = 0; v < blender.weights().size(); ++v) {
     for (const ClusterWeight& of : blender.weights()[v]) {
       if (of.weight == 0) continue;
       members[of.cluster].push_back({v, static_cast<double>(of.weight)});
-      places[of.cluster].push_back(place++);
+      indices[of.cluster].push_back(index++);
     }
   }
   for (std::size_t c = 0; c < count; ++c) {
@@ -164,7 +164,7 @@ ModeBasis cluster_basis(const DeformableObject& object) {
     for (std::size_t i = 0; i < 4; ++i) {
       const double largest = largest_of(functions[i]);
       for (std::size_t m = 0; m < members[c].size(); ++m)
-        out.cluster_entries.items[places[c][m]].values[i] =
+        out.cluster_entries.items[indices[c][m]].values[i] =
             static_cast<std::int16_t>(std::floor(functions[i][m] / largest * ModeBasis::kMaxEntry + 0.5));
       out.steps.insert(out.steps.end(), 3, step_of(functions[i], largest));
     }

@@ -78,22 +78,22 @@ Elimination elimination(const ElasticBody& body, std::size_t vertices) {
   std::vector<std::uint8_t> is_free(vertices, 1);
   for (const std::uint32_t v : body.fixed) is_free[v] = 0;
   const ListOfLists<std::uint32_t> near = neighbours(body, is_free);
-  Elimination out{.order = {}, .place = std::vector<std::uint32_t>(vertices, Elimination::kFixed), .first = {}};
+  Elimination out{.order = {}, .order_index = std::vector<std::uint32_t>(vertices, Elimination::kFixed), .first = {}};
   Walk walk(near, vertices);
   std::vector<std::uint32_t> part;
   for (std::uint32_t v = 0; v < vertices; ++v) {
-    if (is_free[v] == 0 || out.place[v] != Elimination::kFixed) continue;
+    if (is_free[v] == 0 || out.order_index[v] != Elimination::kFixed) continue;
     walk.from(v, part);
     walk.from(part.back(), part);
-    for (const std::uint32_t w : part) out.place[w] = 0;
+    for (const std::uint32_t w : part) out.order_index[w] = 0;
     out.order.insert(out.order.end(), part.begin(), part.end());
   }
   std::ranges::reverse(out.order);
-  for (std::uint32_t i = 0; i < out.order.size(); ++i) out.place[out.order[i]] = i;
+  for (std::uint32_t i = 0; i < out.order.size(); ++i) out.order_index[out.order[i]] = i;
   out.first.resize(out.order.size());
   for (std::uint32_t i = 0; i < out.order.size(); ++i) {
     out.first[i] = i;
-    for (const std::uint32_t v : near[out.order[i]]) out.first[i] = std::min(out.first[i], out.place[v]);
+    for (const std::uint32_t v : near[out.order[i]]) out.first[i] = std::min(out.first[i], out.order_index[v]);
   }
   return out;
 }
@@ -399,7 +399,7 @@ void ElasticMatrix::add(const ElasticBody& body, const Elimination& elimination,
   for (std::size_t e = 0; e < body.tets.size(); ++e) {
     for (std::size_t r = 0; r < 4; ++r) {
       for (std::size_t q = 0; q < 4; ++q) {
-        const std::uint32_t i = elimination.place[body.tets[e][r]], j = elimination.place[body.tets[e][q]];
+        const std::uint32_t i = elimination.order_index[body.tets[e][r]], j = elimination.order_index[body.tets[e][q]];
         if (i == Elimination::kFixed || j == Elimination::kFixed || j > i) continue;
         const Rotation k = elements.stiffness(e, r, q);
         for (std::size_t a = 0; a < 3; ++a) {

@@ -22,8 +22,8 @@ std::vector<Vec3> elastic_rest(const DeformableObject& object, unsigned position
 struct Elimination {
   static constexpr std::uint32_t kFixed = 0xffffffff;
   std::vector<std::uint32_t> order;  ///< free vertices
-  std::vector<std::uint32_t> place;  ///< by vertex: its index in `order`; kFixed
-  std::vector<std::uint32_t> first;  ///< by place: the lowest place that shares a tetrahedron with it
+  std::vector<std::uint32_t> order_index;  ///< by vertex: its index in `order`; kFixed
+  std::vector<std::uint32_t> first;  ///< by order index: the lowest one that shares a tetrahedron with it
 };
 
 /// in   vertices  of the object and inner ones.   pre  corners and fixed vertices exist.   time O(tets log tets); allocates
@@ -98,7 +98,7 @@ class ElasticMatrix {
   ElasticMatrix(const ElasticBody& body, const Elimination& elimination, const ElasticElements& elements, double mass_factor,
                 double stiffness_factor);
 
-  /// Replace b by A^-1 b, both 3 per place of the elimination.   time 0.5 ns per number in the envelope
+  /// Replace b by A^-1 b, both 3 per order index of the elimination.   time 0.5 ns per number in the envelope
   void solve(std::span<double> b) const noexcept;
 
  private:

@@ -99,13 +99,13 @@ class Builder {
     nearest_.clear();
     std::size_t visits = 0;
     mark_[v] = v;
-    const Vec3i& place = rest_[g.vertex[v]];
+    const Vec3i& position = rest_[g.vertex[v]];
     const auto visit = [&](std::span<const std::uint32_t> list) {
       const std::size_t count = std::min(kVisits - visits, list.size());
       for (const std::uint32_t n : list.first(count)) {
         if (mark_[n] == v) continue;
         mark_[n] = v;
-        if (kept[n] || n < v) nearest_.put(distance_(place, rest_[g.vertex[n]]) << kVertexBits | g.vertex[n]);
+        if (kept[n] || n < v) nearest_.put(distance_(position, rest_[g.vertex[n]]) << kVertexBits | g.vertex[n]);
       }
       visits += count;
     };
@@ -113,11 +113,11 @@ class Builder {
     visit(ring);
     for (std::size_t i = 0; i < ring.size() && visits < kVisits; ++i) visit(g.neighbours[ring[i]]);
     auto found = nearest_.get();
-    if (rest_[vertex_of(found.front())] == place) found = found.first(1);
+    if (rest_[vertex_of(found.front())] == position) found = found.first(1);
     for (const Candidate c : found) depths_.back().near.items.push_back(vertex_of(c));
   }
 
-  /// By vertex of the graph: the place among the kept of itself, or of the nearest kept neighbour.
+  /// By vertex of the graph: the index among the kept of itself, or of the nearest kept neighbour.
   std::vector<std::uint32_t> groups(const Graph& g, const Flags& kept) const {
     std::vector<std::uint32_t> number(g.vertex.size(), 0), group(g.vertex.size());
     std::exclusive_scan(kept.begin(), kept.end(), number.begin(), 0u);
@@ -202,19 +202,19 @@ using Pair = std::array<std::uint32_t, 2>;
 /// Consecutive ones among the vertices at one rest position. Programs split a vertex where texture or normals jump: the copies have
 /// no triangle in common, but move together.
 std::vector<Pair> seams(const DeformableObject& object) {
-  struct Place {
+  struct SortKey {
     std::uint64_t xy, z_vertex;
   };
   const auto bits = [](std::int32_t c) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(c)); };
-  std::vector<Place> places;
-  places.reserve(object.rest.size());
+  std::vector<SortKey> keys;
+  keys.reserve(object.rest.size());
   for (std::size_t v = 0; v < object.rest.size(); ++v)
-    places.push_back({bits(object.rest[v][0]) << 32 | bits(object.rest[v][1]), bits(object.rest[v][2]) << 32 | v});
-  std::sort(places.begin(), places.end(),
-            [](const Place& a, const Place& b) { return a.xy != b.xy ? a.xy < b.xy : a.z_vertex < b.z_vertex; });
+    keys.push_back({bits(object.rest[v][0]) << 32 | bits(object.rest[v][1]), bits(object.rest[v][2]) << 32 | v});
+  std::sort(keys.begin(), keys.end(),
+            [](const SortKey& a, const SortKey& b) { return a.xy != b.xy ? a.xy < b.xy : a.z_vertex < b.z_vertex; });
   std::vector<Pair> out;
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    const Place &a = places[i - 1], &b = places[i];
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    const SortKey &a = keys[i - 1], &b = keys[i];
     if (a.xy == b.xy && a.z_vertex >> 32 == b.z_vertex >> 32)
       out.push_back({static_cast<std::uint32_t>(a.z_vertex), static_cast<std::uint32_t>(b.z_vertex)});
   }

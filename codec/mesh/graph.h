@@ -54,7 +54,7 @@ struct CodingOrder {
   std::vector<std::uint32_t> order;  ///< every vertex once
   std::vector<std::uint8_t> depth;   ///< by vertex: 0 finest; roots have the highest
   ListOfLists<std::uint32_t>
-      near;  ///< by place in `order`: at most kParents vertices before it, the nearest first; roots have none
+      near;  ///< by index in `order`: at most kParents vertices before it, the nearest first; roots have none
 };
 
 /// pre  the triangles name existing vertices, at most 2^20.   time 0.4 us per vertex, allocates
@@ -79,7 +79,7 @@ struct VertexHierarchy {
 
   std::vector<std::uint32_t> order;                ///< every vertex once
   std::vector<std::uint8_t> depth;                 ///< by vertex: 0 finest; roots have the highest
-  std::vector<ListOfLists<VertexParent>> parents;  ///< by declared set of weights, then by place in `order`; roots have none
+  std::vector<ListOfLists<VertexParent>> parents;  ///< by declared set of weights, then by index in `order`; roots have none
 };
 
 /// Two vertices are neighbours if they share an edge, or if they are consecutive among the vertices at one rest position.

@@ -146,15 +146,15 @@ ListOfLists<VertexParent> weighted_parents(const DeformableObject& object, const
   ListOfLists<VertexParent> out;
   out.first.reserve(order.near.first.size());
   out.items.reserve(order.near.items.size());
-  std::array<Vec3i, kMost> places{};
+  std::array<Vec3i, kMost> positions{};
   std::array<std::int32_t, kMost> weights{};
   for (std::size_t i = 0; i < order.order.size(); ++i) {
     const auto near = order.near[i];
     const Vec3i& at = object.rest[order.order[i]];
-    for (std::size_t k = 0; k < near.size(); ++k) places[k] = object.rest[near[k]];
+    for (std::size_t k = 0; k < near.size(); ++k) positions[k] = object.rest[near[k]];
     std::size_t count = near.empty() ? 0 : 1;
-    if (count > 0 && places[0] == at) weights[0] = kWhole;
-    else if (count > 0) count = weigh(distance, at, std::span(places).first(near.size()), kNuggets[set], weights);
+    if (count > 0 && positions[0] == at) weights[0] = kWhole;
+    else if (count > 0) count = weigh(distance, at, std::span(positions).first(near.size()), kNuggets[set], weights);
     for (std::size_t k = 0; k < count; ++k) out.items.push_back({near[k], weights[k]});
     out.close();
   }

@@ -9,7 +9,7 @@
 
 namespace tactus {
 
-/// Parents with weights of one set, by place in `order.order`. Vertices that nearly coincide leave only the nearest one.
+/// Parents with weights of one set, by index in `order.order`. Vertices that nearly coincide leave only the nearest one.
 /// time 0.5 us per vertex, allocates
 ListOfLists<VertexParent> weighted_parents(const DeformableObject& object, const CodingOrder& order, unsigned set);
 

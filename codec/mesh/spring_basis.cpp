@@ -24,13 +24,13 @@ namespace {
 constexpr std::size_t kAxes = 3;
 constexpr double kIsotropic = 0x1p-8;  // of a spring's stiffness along its direction
 
-using Pair = std::uint64_t;  // of places, the smaller first
+using Pair = std::uint64_t;  // of order indices, the smaller first
 
-/// Each member and the nearest others at other places.
+/// Each member and the nearest others at other positions.
 std::vector<Pair> near_pairs(std::span<const Vec3i> rest, std::span<const std::uint32_t> members) {
   const RestDistance distance(rest);
   std::vector<Pair> out;
-  std::vector<std::uint64_t> near;  // distance, then place
+  std::vector<std::uint64_t> near;  // distance, then order index
   for (std::uint64_t i = 0; i < members.size(); ++i) {
     near.clear();
     for (std::uint64_t k = 0; k < members.size(); ++k)
@@ -288,10 +288,10 @@ class Builder {
       : object_(object),
         order_(coding_order(object)),
         parents_(weighted_parents(object, order_, 0)),
-        place_(object.rest.size()),
+        order_index_(object.rest.size()),
         free_(object.rest.size(), 1) {
-    for (std::uint32_t i = 0; i < order_.order.size(); ++i) place_[order_.order[i]] = i;
-    for (const std::uint32_t v : object.spring_basis.fixed) free_[place_[v]] = 0;
+    for (std::uint32_t i = 0; i < order_.order.size(); ++i) order_index_[order_.order[i]] = i;
+    for (const std::uint32_t v : object.spring_basis.fixed) free_[order_index_[v]] = 0;
     for (std::uint32_t i = 0; i < free_.size() && anchors_.size() < kBasisAnchors; ++i)
       if (!free_[i]) anchors_.push_back(i);
   }
@@ -338,7 +338,7 @@ class Builder {
   template <class Row>
   void from_parents(std::size_t i, Row row) const {
     if (!free_[i]) return;
-    for (const VertexParent& p : parents_[i]) row(place_[p.vertex], p.weight * 0x1p-15);
+    for (const VertexParent& p : parents_[i]) row(order_index_[p.vertex], p.weight * 0x1p-15);
   }
 
   void grow(std::size_t stage, Columns& x) const {
@@ -389,9 +389,9 @@ class Builder {
   const DeformableObject& object_;
   CodingOrder order_;
   ListOfLists<VertexParent> parents_;
-  std::vector<std::uint32_t> place_;    // by vertex, in the order
-  std::vector<std::uint8_t> free_;      // by place
-  std::vector<std::uint32_t> anchors_;  // places
+  std::vector<std::uint32_t> order_index_;    // by vertex, in the order
+  std::vector<std::uint8_t> free_;      // by order index
+  std::vector<std::uint32_t> anchors_;  // order indices
 };
 
 }  // namespace

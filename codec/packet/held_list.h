@@ -33,11 +33,11 @@ class HeldList {
   bool empty() const noexcept { return parts_.empty(); }
   /// In this tick, as far as it was looked at.
   bool has(TruthPart part, std::uint32_t index) const noexcept {
-    const std::uint32_t place = find(part, index);
-    return place != kNone && is_seen(place);
+    const std::uint32_t at = find(part, index);
+    return at != kNone && is_seen(at);
   }
   /// It was found to be bad, or kept, in this tick.
-  bool is_seen(std::size_t place) const noexcept { return seen_[place] == ticks_; }
+  bool is_seen(std::size_t at) const noexcept { return seen_[at] == ticks_; }
 
   /// Before the parts of a tick are looked at.
   void begin() noexcept {
@@ -47,10 +47,10 @@ class HeldList {
   /// It breaks this rule.   out  it was not held in the tick before
   bool hold(const HeldPart& held) noexcept {
     if (held.part == TruthPart::contact && contacts_++ >= kMostContacts) return false;
-    const std::uint32_t place = find(held.part, held.index);
-    if (place != kNone) {
-      parts_[place].rule = held.rule;
-      seen_[place] = ticks_;
+    const std::uint32_t at = find(held.part, held.index);
+    if (at != kNone) {
+      parts_[at].rule = held.rule;
+      seen_[at] = ticks_;
       return false;
     }
     if (held.part != TruthPart::contact) slot(held) = static_cast<std::uint32_t>(parts_.size());
@@ -60,9 +60,9 @@ class HeldList {
   }
   /// There is no news of it: if it was held, it is.
   void keep(TruthPart part, std::uint32_t index) noexcept {
-    if (const std::uint32_t place = find(part, index); place != kNone) seen_[place] = ticks_;
+    if (const std::uint32_t at = find(part, index); at != kNone) seen_[at] = ticks_;
   }
-  void keep(std::size_t place) noexcept { seen_[place] = ticks_; }
+  void keep(std::size_t at) noexcept { seen_[at] = ticks_; }
   /// After the parts of a tick were looked at: what was not held in it breaks no rule any more.
   void end() noexcept {
     if (std::ranges::all_of(seen_, [this](std::uint64_t seen) { return seen == ticks_; })) return;
@@ -92,7 +92,7 @@ class HeldList {
 
   std::vector<HeldPart> parts_;
   std::vector<std::uint64_t> seen_;                  // of each: the tick, counted, that found it so last
-  std::array<std::vector<std::uint32_t>, 5> slots_;  // by part and index: its place; contacts have none
+  std::array<std::vector<std::uint32_t>, 5> slots_;  // by part and index: where it is in parts_; contacts have none
   std::uint64_t ticks_ = 0;                          // that were looked at
   std::uint32_t contacts_ = 0;                       // that are bad in this one
 };

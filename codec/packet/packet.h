@@ -36,7 +36,7 @@ struct Packet {
   std::size_t substream = 0;            ///< 0: the rigid objects; i + 1: deformable object i; the next: the loads
   std::uint16_t sequence = 0;           ///< in its substream
   std::uint64_t number = 0;             ///< the same, not wrapped
-  bool key = false;                     ///< builds on the initial state: a place to seek to
+  bool key = false;                     ///< builds on the initial state: a tick to seek to
   Layer layer = Layer::all;             ///< deformable objects: which vertices it codes
   Reason reason = Reason::request;      ///< rigid objects: strongest among the updates (haptic > visual > heartbeat > request)
   std::uint32_t updates = 0;            ///< objects, or vertices with a residual of their own

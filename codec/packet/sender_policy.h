@@ -16,15 +16,15 @@ enum class Baseline : std::uint8_t {
 
 /// What the link to the receiver and back does, as measured. It decides when Baseline::acknowledged sends a state again.
 struct LinkState {
-  std::int64_t answer = 0;  ///< [ticks] after which a packet that arrived is acknowledged: round trip, jitter, time between
+  std::int64_t ack_timeout = 0;  ///< [ticks] after which a packet that arrived is acknowledged: round trip, jitter, time between
                             ///< acknowledgements. 0: not known, nothing is sent again
   double loss = 0;          ///< fraction of packets, 0 to 1
-  bool copies = false;  ///< what is lost also comes again as it was, and in time: nothing is made anew before the answer is due
+  bool copies = false;  ///< what is lost also comes again as it was, and in time: nothing is made anew before the acknowledgement is due
   bool waits = false;   ///< packets wait for their turn: rigid objects join one sooner. Also with Baseline::repaired
 };
 
 struct SenderPolicy {
-  /// [s] After this long the next packet builds on the initial state (a place to seek to). 0: never, but after a silence of half
+  /// [s] After this long the next packet builds on the initial state (a tick to seek to). 0: never, but after a silence of half
   /// the time of 25-packet section 5 (8192 ticks, or 8 s if that is longer), when receivers may soon have forgotten what there was.
   double key_interval = 5.0;
   /// A sender restarted for the same receivers takes another number, at random. Its key packet does not name the objects at their

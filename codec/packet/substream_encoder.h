@@ -164,11 +164,11 @@ class SubstreamEncoder {
     if (number > base_ && states_.find(number) != nullptr) base_ = number;
   }
 
-  /// The newest state is sent again, made anew, when no acknowledgement has named it for `answer` ticks, then for twice as long, and so
+  /// The newest state is sent again, made anew, when no acknowledgement has named it for `ack_timeout` ticks, then for twice as long, and so
   /// on up to 64 times: another packet may never come. Nothing without Baseline::acknowledged.   in   ticks  0: never
-  void set_answer(std::int64_t ticks) noexcept {
+  void set_ack_timeout(std::int64_t ticks) noexcept {
     constexpr std::int64_t kMost = 1 << 24;
-    answer_ = baseline_ == Baseline::acknowledged ? std::clamp<std::int64_t>(ticks, 0, kMost) : 0;
+    ack_timeout_ = baseline_ == Baseline::acknowledged ? std::clamp<std::int64_t>(ticks, 0, kMost) : 0;
   }
 
   const State& newest() const noexcept { return states_.newest(); }
@@ -181,7 +181,7 @@ class SubstreamEncoder {
   }
 
   bool is_overdue(std::int64_t tick) const noexcept {
-    return answer_ > 0 && newest_ > base_ && tick - states_.newest().tick > answer_ << repeats_;
+    return ack_timeout_ > 0 && newest_ > base_ && tick - states_.newest().tick > ack_timeout_ << repeats_;
   }
 
   static constexpr unsigned kMostRepeats = 6;
@@ -204,7 +204,7 @@ class SubstreamEncoder {
   Before before_{key_, 0};               // the last packet
   bool can_forget_ = false;
   std::uint64_t newest_ = 0;  // number of the newest state; 0: of none
-  std::int64_t answer_ = 0;   // [ticks] until it is acknowledged, if it arrived; 0: not known
+  std::int64_t ack_timeout_ = 0;   // [ticks] until it is acknowledged, if it arrived; 0: not known
   unsigned repeats_ = 0;      // of it so far, at most kMostRepeats
 };
 

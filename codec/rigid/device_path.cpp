@@ -38,12 +38,12 @@ std::optional<std::int64_t> DevicePath::device_tick(std::int64_t tick) const noe
   return std::nullopt;
 }
 
-std::optional<DevicePath::Place> DevicePath::place(std::int64_t tick) const noexcept {
+std::optional<DevicePath::StateAt> DevicePath::state_at(std::int64_t tick) const noexcept {
   const auto device = device_tick(tick);
   if (!device) return std::nullopt;
   for (std::size_t back = 1; back <= count_; ++back) {
     const Packet& packet = packet_at(back);
-    if (packet.takes_effect && packet.state.tick <= *device) return Place{packet.state, *device};
+    if (packet.takes_effect && packet.state.tick <= *device) return StateAt{packet.state, *device};
   }
   return std::nullopt;
 }
@@ -51,7 +51,7 @@ std::optional<DevicePath::Place> DevicePath::place(std::int64_t tick) const noex
 std::optional<std::array<std::int32_t, 3>> DevicePath::at(std::int64_t tick) const noexcept {
   Known& known = known_[static_cast<std::size_t>(tick) % known_.size()];
   if (known.tick == tick && known.revision == revision_) return known.position;
-  const auto found = place(tick);
+  const auto found = state_at(tick);
   if (!found) return std::nullopt;
   const Vec3i out = RigidPredictor(*scene_).pose(found->state, found->tick).position;
   if (found->tick <= passed_) known = {tick, revision_, out};

@@ -44,16 +44,16 @@ class DevicePath {
     passed_ = device_tick(tick).value_or(passed_);
   }  ///< up to here nothing is added any more
 
-  /// Tick of the server from which on it may be known; nothing: no pace was signalled yet.
+  /// Tick of the server from which on it may be known; nothing: no tick mapping was signalled yet.
   std::optional<std::int64_t> begins() const noexcept { return begins_; }
 
   /// The state that the device has at a tick of the server, and its own tick then.
-  struct Place {
+  struct StateAt {
     const RigidState& state;
     std::int64_t tick = 0;
   };
-  std::optional<Place> place(std::int64_t tick) const noexcept;  ///< nothing: not known, or no longer.   time O(packets after it)
-  /// [position grid] where the device is.   time that of place() and RigidPredictor::pose(); of the last 256 ticks that are past, once
+  std::optional<StateAt> state_at(std::int64_t tick) const noexcept;  ///< nothing: not known, or no longer.   time O(packets after it)
+  /// [position grid] where the device is.   time that of state_at() and RigidPredictor::pose(); of the last 256 ticks that are past, once
   std::optional<std::array<std::int32_t, 3>> at(std::int64_t tick) const noexcept;
   std::uint64_t revision() const noexcept { return revision_; }  ///< changes when the past does
   const SharedScene& scene() const noexcept { return scene_; }

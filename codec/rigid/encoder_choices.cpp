@@ -393,7 +393,7 @@ bool PredictorChoice::is_driven(std::uint32_t object, const RigidState& truth, c
 
 Predictor PredictorChoice::choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted, bool is_touched,
                                   const RigidState& current) const noexcept {
-  const bool may_be_driven = predictor_.knows_device() && truth.contact != DrivenContact{};
+  const bool may_be_driven = predictor_.has_device_path() && truth.contact != DrivenContact{};
   Predictor best = Predictor::linear;
   if (is_touched && !may_be_driven) return best;
   if (may_be_driven && drives_on(object, truth, permitted, current)) return Predictor::driven;

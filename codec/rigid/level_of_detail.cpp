@@ -32,15 +32,15 @@ LevelsOfDetail::LevelsOfDetail(const Scene& scene)
   limits_.back() = square(reach);
 }
 
-void LevelsOfDetail::set_viewpoints(std::span<const Vec3> places) noexcept {
+void LevelsOfDetail::set_viewpoints(std::span<const Vec3> viewpoints) noexcept {
   const std::size_t before = std::exchange(count_, 0);
   const double unit = std::ldexp(1.0, -scene_.grid.position);
-  for (const Vec3& p : places)
-    if (is_finite(p) && count_ < kMostPlaces) places_[count_++] = {p.x / unit, p.y / unit, p.z / unit};
+  for (const Vec3& p : viewpoints)
+    if (is_finite(p) && count_ < kMostViewpoints) viewpoints_[count_++] = {p.x / unit, p.y / unit, p.z / unit};
   bool moved = !std::exchange(looks_, true) || count_ != before;
-  for (std::size_t i = 0; i < count_; ++i) moved = moved || distance_squared(places_[i], scanned_[i]) > step_;
+  for (std::size_t i = 0; i < count_; ++i) moved = moved || distance_squared(viewpoints_[i], scanned_[i]) > step_;
   if (!moved) return;
-  scanned_ = places_;
+  scanned_ = viewpoints_;
   left_ = scene_.moving().size();
 }
 
@@ -57,9 +57,9 @@ void LevelsOfDetail::look(std::uint32_t object, const RigidTruth& truth) noexcep
   }
   const std::uint8_t before = of(object);
   const auto& p = truth.state(object).position;
-  const Place at{double(p[0]), double(p[1]), double(p[2])};
+  const Position at{double(p[0]), double(p[1]), double(p[2])};
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < count_; ++i) least = std::min(least, distance_squared(at, places_[i]));
+  for (std::size_t i = 0; i < count_; ++i) least = std::min(least, distance_squared(at, viewpoints_[i]));
   const std::uint8_t wanted = level_at(least);
   std::uint8_t level = wanted;
   if (wanted > before) level = std::max(before, level_at(least / square(kHysteresis)));

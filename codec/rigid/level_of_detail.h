@@ -19,14 +19,14 @@ namespace tactus {
 
 class LevelsOfDetail {
  public:
-  static constexpr std::size_t kMostPlaces = 2;
+  static constexpr std::size_t kMostViewpoints = 2;
 
   /// pre  `scene` outlives this and has interest.   allocates one byte per object
   explicit LevelsOfDetail(const Scene& scene);
 
-  /// Places [m] that the client looks from, kMostPlaces at most; what is not finite does not count. Without any it is sent nothing; before the
+  /// Viewpoints [m] that the client looks from, kMostViewpoints at most; what is not finite does not count. Without any it is sent nothing; before the
   /// first call of all, in full.
-  void set_viewpoints(std::span<const Vec3> places) noexcept;
+  void set_viewpoints(std::span<const Vec3> viewpoints) noexcept;
 
   bool looks() const noexcept { return looks_; }  ///< set_viewpoints() was called
   std::uint8_t of(std::uint32_t object) const noexcept { return levels_[object] & 7u; }
@@ -51,14 +51,14 @@ class LevelsOfDetail {
   }
 
  private:
-  using Place = std::array<double, 3>;  // grid units
+  using Position = std::array<double, 3>;  // grid units
   static constexpr std::uint8_t kLeftOut = 8 + kOutOfInterest;
   std::uint8_t level_at(double square) const noexcept;
 
   const Scene& scene_;
   std::array<double, kOutOfInterest> limits_{};  // squares of the distances up to which the levels go
-  double step_;                                  // square of the distance that a place may move before all is looked at again
-  std::array<Place, kMostPlaces> places_{}, scanned_{};
+  double step_;                                  // square of the distance that a viewpoint may move before all is looked at again
+  std::array<Position, kMostViewpoints> viewpoints_{}, scanned_{};
   std::size_t count_ = 0;
   bool looks_ = false;                       // set_viewpoints() was called
   std::size_t slice_, left_ = 0, next_ = 0;  // objects of a tick; that are still to be looked at; index of the next

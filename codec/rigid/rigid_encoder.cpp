@@ -90,8 +90,8 @@ void RigidEncoder::set_bound_scale(double factor) noexcept {
   wakes_all_ = true;
 }
 
-void RigidEncoder::set_viewpoints(std::span<const Vec3> places) noexcept {
-  if (levels_) levels_->set_viewpoints(places);
+void RigidEncoder::set_viewpoints(std::span<const Vec3> viewpoints) noexcept {
+  if (levels_) levels_->set_viewpoints(viewpoints);
 }
 
 void RigidEncoder::set_link(const LinkState& link) noexcept {
@@ -102,7 +102,7 @@ void RigidEncoder::set_link(const LinkState& link) noexcept {
   loses_ = link.loss >= kSomeLoss;
   for (std::size_t i = 0; i < follow_up_.size(); ++i) {
     const auto soon = static_cast<std::int64_t>(std::ceil(kFollowUp[i] * scene_.tick_rate));
-    follow_up_[i] = link.answer <= 0 ? 0 : link.loss >= kSomeLoss && !link.copies ? soon : link.answer;
+    follow_up_[i] = link.ack_timeout <= 0 ? 0 : link.loss >= kSomeLoss && !link.copies ? soon : link.ack_timeout;
   }
 }
 
@@ -223,7 +223,7 @@ double RigidEncoder::haptic_ratio_of(std::uint32_t object, const RigidPose& show
   return out;
 }
 
-/// An update would bring the shown pose nearer to the truth: they are not at the same place of the grid.
+/// An update would bring the shown pose nearer to the truth: they are not at the same point of the grid.
 bool RigidEncoder::can_improve(std::uint32_t object, const RigidPose& shown) const noexcept {
   const Residual rest = quantise_pose(shown, truth_.state(object), scene_.objects[object].dof, 0, scene_.grid);
   return rest.of != Residual{}.of;
@@ -389,7 +389,7 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
 }
 
 /// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
-/// coarse for the permitted force error, or the distance too long for one update, the nearest place that it can name.
+/// coarse for the permitted force error, or the distance too long for one update, the nearest point that it can name.
 Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction, const RigidState& signalled) const noexcept {
   const std::uint32_t object = update.object;
   const RigidState& truth = truth_.state(object);

@@ -54,7 +54,7 @@ class RigidEncoder {
   void forget_last() noexcept;
   void set_link(const LinkState& link) noexcept;
   void set_bound_scale(double factor) noexcept;  ///< of all thresholds.   pre  factor >= 1
-  void set_viewpoints(std::span<const Vec3> places) noexcept;
+  void set_viewpoints(std::span<const Vec3> viewpoints) noexcept;
 
  private:
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min() / 2;  // a tick

@@ -91,7 +91,7 @@ void DrivenBody::start(const Scene& scene, std::uint32_t object, const RigidStat
   is_touching_ = true;
   rotation_ = state.rotation;
   for (std::size_t i = 0; i < 3; ++i) {
-    place_[i] = static_cast<std::int64_t>(state.position[i]) << (32 - scene.grid.position);
+    position_[i] = static_cast<std::int64_t>(state.position[i]) << (32 - scene.grid.position);
     point_[i] = limited(static_cast<std::int64_t>(state.contact.point[i]) << (28 - DrivenContact::kPoint), 28);
     normal_[i] = limited(static_cast<std::int64_t>(state.contact.normal[i]) << (30 - DrivenContact::kNormal), 30);
     gravity_[i] = scene.motion ? limited(scaled(scene.motion->gravity[i], scene.grid.velocity, 16), 30) : 0;
@@ -165,7 +165,7 @@ Vec DrivenBody::pull(const Scene& scene, const DrivenConstants::Body& body, cons
   }
   Vec device;
   for (std::size_t i = 0; i < 3; ++i) {
-    device[i] = round_shift((static_cast<std::int64_t>((*at)[i]) << (32 - scene.grid.position)) - place_[i], 4);
+    device[i] = round_shift((static_cast<std::int64_t>((*at)[i]) << (32 - scene.grid.position)) - position_[i], 4);
     if (device[i] < -bit(28) || device[i] > bit(28)) is_touching_ = false;
   }
   if (!is_touching_) return {};
@@ -191,7 +191,7 @@ void DrivenBody::hold(const Scene& scene, const DrivenConstants::Body& body, con
   for (std::size_t i = 0; i < 3; ++i) {
     velocity_[i] = limited(velocity_[i] + round_div((acceleration[i] + gravity_[i]) << 11, rate), 33);
     angular_[i] = limited(angular_[i] + spin[i], 33);
-    place_[i] = limited(place_[i] + round_div(velocity_[i] << 5, rate), 58);
+    position_[i] = limited(position_[i] + round_div(velocity_[i] << 5, rate), 58);
     half[i] = round_div(angular_[i] << 7, rate);
     velocity_[i] -= round_shift(velocity_[i] * damping, 20);
     angular_[i] -= round_shift(angular_[i] * damping, 20);
@@ -221,7 +221,7 @@ void DrivenBody::push(const Scene& scene, const DrivenConstants::Body& body, con
   const std::int64_t step = std::min(round_div(speed_ << 5, rate), bit(31));
   Vec half;
   for (std::size_t i = 0; i < 3; ++i) {
-    place_[i] = limited(place_[i] + round_shift(step * direction[i], 24), 58);
+    position_[i] = limited(position_[i] + round_shift(step * direction[i], 24), 58);
     half[i] = round_shift(step * about_[i], 22);
   }
   rotation_ = renormalise(multiply(rotation_, small_turn(half)));
@@ -241,7 +241,7 @@ RigidPose DrivenBody::shown(const Scene& scene, std::uint32_t object) const noex
   const std::uint8_t dof = scene.objects[object].dof;
   RigidPose out{from_.position, from_.rotation};
   for (std::size_t i = 0; i < 3; ++i)
-    if (dof >> i & 1u) out.position[i] = saturate32(round_shift(place_[i], 32u - scene.grid.position));
+    if (dof >> i & 1u) out.position[i] = saturate32(round_shift(position_[i], 32u - scene.grid.position));
   if (dof >> 3 != 0) out.rotation = rotation_;
   return out;
 }
@@ -320,7 +320,7 @@ RigidPose RigidPredictor::pose(const RigidState& state, std::int64_t tick) const
     if (dt > 0) fraction = slide_fraction(dt, rest);
   }
   if (dt == 0) return pose;
-  constexpr std::int64_t kFar = std::int64_t{1} << 33;  // half of it is beyond every place
+  constexpr std::int64_t kFar = std::int64_t{1} << 33;  // half of it is beyond every position
   const unsigned shift = static_cast<unsigned>(scene_.grid.position - scene_.grid.velocity);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t moved = std::clamp(round_div((state.velocity[i] * dt) << shift, scene_.tick_rate), -kFar, kFar);

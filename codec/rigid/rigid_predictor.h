@@ -47,7 +47,7 @@ class DrivenBody {
   std::int64_t tick_ = -1;  // that was reached; below that of from_: none
   std::uint64_t revision_ = 0;
   bool is_touching_ = false;
-  Vec place_{};  // x 2^-32 m
+  Vec position_{};  // x 2^-32 m
   std::array<std::int32_t, 4> rotation_{};
   Vec point_{};             // where the spring pulls, object frame, x 2^-28 m
   Vec normal_{};            // x 2^-30
@@ -94,7 +94,7 @@ class RigidPredictor {
   ///   driven     as linear: packets are coded on what every receiver knows
   RigidPose pose(const RigidState& state, std::int64_t tick) const noexcept;
 
-  bool knows_device() const noexcept { return path_ != nullptr; }
+  bool has_device_path() const noexcept { return path_ != nullptr; }
   /// The pose at `tick` as it is shown: pose(), but where the device drives the object, DrivenBody::pose().
   /// pre  those of pose(); `state` is one of `object`.   time that of both
   RigidPose shown(std::uint32_t object, const RigidState& state, std::int64_t tick) const noexcept;

@@ -20,19 +20,19 @@ RigidWork::RigidWork(const Scene& scene) : entries_(std::bit_ceil(std::clamp<std
   }
 }
 
-std::size_t RigidWork::place(const Asked& asked) const noexcept {
+std::size_t RigidWork::slot_of(const Asked& asked) const noexcept {
   const std::uint64_t hash =
       (asked.version + (asked.early == 1 ? 0 : 1u << 20)) * 0xBF58476D1CE4E5B9u + asked.object * 0x9E3779B97F4A7C15u;
   return (hash >> 32) & (entries_.size() - 1);
 }
 
 const RigidDecision* RigidWork::find(std::uint64_t read, const Asked& asked) const noexcept {
-  const Entry& entry = entries_[place(asked)];
+  const Entry& entry = entries_[slot_of(asked)];
   return entry.read == read && entry.asked == asked ? &entry.decision : nullptr;
 }
 
 void RigidWork::put(std::uint64_t read, const Asked& asked, const RigidDecision& decision) noexcept {
-  entries_[place(asked)] = {read, asked, decision};
+  entries_[slot_of(asked)] = {read, asked, decision};
 }
 
 const RigidWork::Body* RigidWork::find(std::uint64_t read, std::span<const std::uint32_t> key) const noexcept {

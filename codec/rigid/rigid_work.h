@@ -70,7 +70,7 @@ class RigidWork {
     Asked asked;
     RigidDecision decision;
   };
-  std::size_t place(const Asked& asked) const noexcept;
+  std::size_t slot_of(const Asked& asked) const noexcept;
 
   std::vector<Entry> entries_;  // a power of two of them
   std::array<Body, 8> bodies_;

@@ -28,7 +28,7 @@ Capabilities capabilities_of(std::size_t index) {
   out.nominal_force = kNominalForce;
   out.peak_force = kPeakForce;
   out.rate = 1000;
-  out.paces = true;
+  out.has_clock = true;
   return out;
 }
 

@@ -19,12 +19,12 @@ namespace {
 constexpr std::uint8_t kBegin = '<', kEnd = '>', kZero = 0x41;
 constexpr std::uint8_t kHome = 1;
 constexpr std::size_t kModemBytes = 2;
-constexpr std::size_t kFlags = 13, kUnknown = 14;  // places in a frame
+constexpr std::size_t kFlags = 13, kUnknown = 14;  // indices in a frame
 
-bool fits(std::uint8_t byte, std::size_t place) noexcept {
-  if (place == kUnknown) return true;
-  if (place == kFrameBytes - 1) return byte == kEnd;
-  const unsigned most = place == kFlags ? 0x7f : 0xf;
+bool fits(std::uint8_t byte, std::size_t index) noexcept {
+  if (index == kUnknown) return true;
+  if (index == kFrameBytes - 1) return byte == kEnd;
+  const unsigned most = index == kFlags ? 0x7f : 0xf;
   return byte >= kZero && byte - kZero <= static_cast<int>(most);
 }
 
@@ -65,9 +65,9 @@ void ReplyParser::give(std::span<const std::uint8_t> transfer) noexcept {
 
 std::optional<Result<Reply>> ReplyParser::next() noexcept {
   while (at_ < transfer_.size()) {
-    const std::size_t place = at_++;
-    if (place % kPacketBytes < kModemBytes) continue;
-    if (auto out = take(transfer_[place])) return out;
+    const std::size_t index = at_++;
+    if (index % kPacketBytes < kModemBytes) continue;
+    if (auto out = take(transfer_[index])) return out;
   }
   return std::nullopt;
 }

@@ -4,7 +4,7 @@
 ///
 /// The position is how far the cap is pushed out of its middle, the orientation how far it is turned: a cap that springs back comes back
 /// to zero. HID axes are x to the right, y towards the user, z down; turns are about them, right-handed.
-/// Other HID devices have no place; asked for by path they hand on their reports as they come.
+/// Other HID devices have no position; asked for by path they hand on their reports as they come.
 /// A device whose descriptor names no unit of length reaches kDefaultReach each way, one without a unit of angle kDefaultTurn.
 #pragma once
 

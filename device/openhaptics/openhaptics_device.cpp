@@ -124,7 +124,7 @@ tl::expected<void, std::string> OpenHapticsDevice::start(const std::string& whic
   capabilities_.force_axes = 3;
   capabilities_.nominal_force = capabilities_.peak_force = most;
   capabilities_.rate = rate;
-  capabilities_.paces = true;
+  capabilities_.has_clock = true;
   if (std::string error = pending_error(runtime_); !error.empty()) return tl::unexpected(std::move(error));
   if (!(most > 0 && most < 100) || !(rate > 0 && rate <= kMostRate))
     return tl::unexpected("it names " + std::to_string(most) + " N and " + std::to_string(rate) + " Hz");
@@ -139,10 +139,10 @@ tl::expected<void, std::string> OpenHapticsDevice::start(const std::string& whic
 
 OpenHapticsDevice::~OpenHapticsDevice() {
   if (is_scheduled_) {
-    constexpr Time kPatience = 20 * kMillisecond;
+    constexpr Time kTimeout = 20 * kMillisecond;
     force_.halt();
     ends_ = true;
-    const Time until = monotonic_clock().now() + kPatience;
+    const Time until = monotonic_clock().now() + kTimeout;
     while (samples_.take(until)) {  // until tick() has written zero for the last time
     }
     runtime_.unschedule(task_);

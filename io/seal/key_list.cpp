@@ -37,7 +37,7 @@ KeyList::KeyList(Key key) { append({std::make_shared<const Key>(std::move(key)),
 /// Whether there is room, and no such name.
 tl::expected<void, Errc> KeyList::append(User user) {
   if (users_.size() == kMostUsers) return tl::unexpected(Errc::limit_exceeded);
-  if (!place_.emplace(user.name(), users_.size()).second) return tl::unexpected(Errc::invalid);
+  if (!index_.emplace(user.name(), users_.size()).second) return tl::unexpected(Errc::invalid);
   users_.push_back(std::move(user));
   return {};
 }
@@ -94,15 +94,15 @@ Result<void> KeyList::add(Key key, Role role) {
 bool KeyList::remove(std::string_view name) {
   if (find(name) == nullptr) return false;
   std::vector<User> users = std::exchange(users_, {});
-  place_.clear();
+  index_.clear();
   for (User& user : users)
     if (user.name() != name) static_cast<void>(append(std::move(user)));
   return true;
 }
 
 const KeyList::User* KeyList::find(std::string_view name) const noexcept {
-  const auto found = place_.find(name);
-  return found == place_.end() ? nullptr : &users_[found->second];
+  const auto found = index_.find(name);
+  return found == index_.end() ? nullptr : &users_[found->second];
 }
 
 bool KeyList::holds(const Key& key) const noexcept {

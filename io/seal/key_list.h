@@ -56,7 +56,7 @@ class KeyList {
  private:
   tl::expected<void, Errc> append(User user);
   std::vector<User> users_;                                  // in the order of the file
-  std::unordered_map<std::string_view, std::size_t> place_;  // of a name, which is in the key and stays where it is
+  std::unordered_map<std::string_view, std::size_t> index_;  // of a name, which is in the key and stays where it is
 };
 
 /// What a file was: another one, or the same one after it was changed, has another of these.

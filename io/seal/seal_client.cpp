@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kFirstRepeat = 250'000, kNextRepeat = 500'000;  // [us] after a flight was sent
 constexpr unsigned kMostRepetitions = 6;                                // of a flight, then the handshake begins anew
-constexpr std::uint64_t kPatience = 10'000'000;                         // [us] for the whole handshake
+constexpr std::uint64_t kTimeout = 10'000'000;                         // [us] for the whole handshake
 
 }  // namespace
 
@@ -142,7 +142,7 @@ Result<std::span<const std::uint8_t>> Client::seal(std::span<const std::uint8_t>
 Result<void> Client::handle_timeout(std::uint64_t now) noexcept {
   Impl& in = *impl_;
   if (in.is_closed || is_open()) return {};
-  if (now >= in.began + kPatience) {
+  if (now >= in.began + kTimeout) {
     in.is_closed = true;
     if (in.was_answered) return fail(Errc::state, "R-SEA-2");
     return fail(Errc::state, "R-SEA-1");
@@ -171,7 +171,7 @@ std::optional<std::span<const std::uint8_t>> Client::poll_datagram() noexcept {
 std::optional<std::uint64_t> Client::next_timeout() const noexcept {
   const Impl& in = *impl_;
   if (in.is_closed || is_open()) return std::nullopt;
-  return std::min(in.repeat_at, in.began + kPatience);
+  return std::min(in.repeat_at, in.began + kTimeout);
 }
 
 Counters Client::counters() const noexcept { return impl_->counters; }

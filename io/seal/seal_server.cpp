@@ -14,7 +14,7 @@
 namespace tactus::seal {
 namespace {
 
-constexpr std::uint64_t kPatience =
+constexpr std::uint64_t kTimeout =
     10'000'000;                                 // [us] for a handshake; then for the session in it; for repeating the last flight
 constexpr std::uint64_t kRepeatEvery = 50'000;  // [us] at most, also of alerts
 constexpr int kRepetitions = 3;                 // of what ends an association
@@ -179,7 +179,7 @@ void Server::Impl::hear_handshake(std::uint64_t now, const net::Address& from, s
     return;
   }
   Peer& peer = **open;  // it may have missed our last flight
-  if (now < peer.began + kPatience && now >= peer.spoke_at + kRepeatEvery) speak(now, peer);
+  if (now < peer.began + kTimeout && now >= peer.spoke_at + kRepeatEvery) speak(now, peer);
 }
 
 std::optional<Server::Opened> Server::Impl::hear_record(const RecordHead& head, const net::Address& from,
@@ -218,7 +218,7 @@ bool Server::has_work() const noexcept {
 
 void Server::work(std::uint64_t now) noexcept try {
   Impl& in = *impl_;
-  std::erase_if(in.shaking, [now](const auto& peer) { return now >= peer->began + kPatience; });
+  std::erase_if(in.shaking, [now](const auto& peer) { return now >= peer->began + kTimeout; });
   for (std::size_t i = 0; i < in.shaking.size(); ++i) {
     const std::size_t at = (in.next + i) % in.shaking.size();
     if (in.shaking[at]->inbox.empty()) continue;
@@ -311,7 +311,7 @@ void Server::keep_only(std::uint64_t now, const std::function<bool(std::uint64_t
   Impl& in = *impl_;
   for (std::size_t i = in.peers.size(); i-- > 0;) {
     Peer& peer = *in.peers[i];
-    if (now < peer.began + kPatience || is_needed(peer.id)) continue;
+    if (now < peer.began + kTimeout || is_needed(peer.id)) continue;
     in.send(peer.at, peer.link->close());
     in.forget(peer.id);
   }

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include <tactus/base/rule.h>
-#include <tactus/trace/csv_pace.h>
+#include <tactus/trace/csv_rate.h>
 #include <tactus/trace/differences.h>
 #include <tactus/trace/missing.h>
 #include <tactus/trace/sample_track.h>
@@ -85,11 +85,11 @@ Result<void> ArrayWriter::take_times() {
   std::optional<std::int64_t> last;
   for (std::size_t row = 0; row < arrays_.time.size(); ++row) {
     const std::int64_t time = arrays_.time[row];
-    const std::string place = "row " + std::to_string(row);
+    const std::string location = "row " + std::to_string(row);
     if (time == SampledArrays::kNoTime) {
-      notes_.add("time", "missing; the row is left out", place);
+      notes_.add("time", "missing; the row is left out", location);
     } else if (last && time < *last) {
-      notes_.add("time", "falls; the row is left out", place);
+      notes_.add("time", "falls; the row is left out", location);
     } else {
       rows_.push_back(row);
       last = time;
@@ -118,21 +118,21 @@ CsvRow ArrayWriter::row_of(std::size_t row) const {
 
 /// Times that repeat: rows in groups get even times; where they are copies, the last row of each time counts.
 Result<void> ArrayWriter::spread_groups() {
-  constexpr std::size_t kRowsForPace = 10'000;
+  constexpr std::size_t kRowsForEstimate = 10'000;
   const auto repeats = [this](std::size_t i) { return arrays_.time[rows_[i]] == arrays_.time[rows_[i - 1]]; };
   std::size_t first = 1;
   while (first < rows_.size() && !repeats(first)) ++first;
   if (first >= rows_.size()) return {};
-  const std::size_t from = first > kRowsForPace / 2 ? first - kRowsForPace / 2 : 0;
+  const std::size_t from = first > kRowsForEstimate / 2 ? first - kRowsForEstimate / 2 : 0;
   std::vector<CsvRow> some;
-  for (std::size_t i = from; i < std::min(rows_.size(), from + kRowsForPace); ++i) some.push_back(row_of(rows_[i]));
+  for (std::size_t i = from; i < std::min(rows_.size(), from + kRowsForEstimate); ++i) some.push_back(row_of(rows_[i]));
   CsvMapping mapping;
   mapping.tick_rate = arrays_.tick_rate;
   CsvNamedPlan plan;
   plan.time_is_stated = true;
-  const auto pace = find_pace(some, mapping, plan);
-  if (pace && pace->period > 0) {
-    EvenTimes even(*pace);
+  const auto rate = estimate_rate(some, mapping, plan);
+  if (rate && rate->period > 0) {
+    EvenTimes even(*rate);
     for (const std::size_t row : rows_) even_.push_back(even.time_of(row_of(row), 0));
     for (const ReadNote& note : plan.notes.all()) notes_.add("time", note.what);
     return {};

@@ -5,7 +5,7 @@
 /// bends alike at both rows, else a straight line and an arc; forces and velocities follow lines (sample_track.h). A sample with a value that is not finite, or a rotation whose length is off 1 by more than 2 %, is missing: it
 /// is interpolated where its neighbours are at most `gap` apart, else the last one is held, a force no longer than `gap` and a velocity not
 /// at all: then they are 0. No ticks are made between rows that are farther apart than that. Rows that share a time or come in groups, as of
-/// a clock that is coarser than the samples, are spread evenly, as those of a table are (csv_pace.h).
+/// a clock that is coarser than the samples, are spread evenly, as those of a table are (csv_rate.h).
 #pragma once
 
 #include <cstdint>

@@ -95,10 +95,10 @@ Result<std::size_t> ByteSource::read_unpacked(std::span<std::uint8_t> out) noexc
 
 std::optional<std::uint64_t> ByteSource::stored_size() noexcept {
   if (!file_) return memory_.size();
-  const off_t place = static_cast<off_t>(stored_ + head_.size());
+  const off_t position = static_cast<off_t>(stored_ + head_.size());
   if (file_.get() == stdin || fseeko(file_.get(), 0, SEEK_END) != 0) return std::nullopt;
   const off_t end = ftello(file_.get());
-  if (end < 0 || fseeko(file_.get(), place, SEEK_SET) != 0) return std::nullopt;
+  if (end < 0 || fseeko(file_.get(), position, SEEK_SET) != 0) return std::nullopt;
   return static_cast<std::uint64_t>(end);
 }
 

@@ -26,7 +26,7 @@ class ByteSource {
   /// A frame that ends early ends the input.   pre  nothing was read.   err  io R-TRC-1
   Result<Compression> unpack();
 
-  /// Fill `out` from the current place; fewer bytes only at the end of the input.   err  io R-TRC-1; malformed R-TRC-8
+  /// Fill `out` from the current position; fewer bytes only at the end of the input.   err  io R-TRC-1; malformed R-TRC-8
   Result<std::size_t> read(std::span<std::uint8_t> out) noexcept;
   /// The next bytes, up to `count`, without moving.   pre  not unpacking.   err  io R-TRC-1
   Result<std::span<const std::uint8_t>> peek(std::size_t count);
@@ -37,7 +37,7 @@ class ByteSource {
   std::optional<std::uint64_t> stored_size() noexcept;
   /// Size of what read() gives in bytes; nothing when the input is a pipe or is unpacked.
   std::optional<std::uint64_t> size() noexcept { return unpacker_ ? std::nullopt : stored_size(); }
-  /// Fill `out` from `offset` and return to the current place; false when that cannot be done.
+  /// Fill `out` from `offset` and return to the current position; false when that cannot be done.
   bool read_at(std::uint64_t offset, std::span<std::uint8_t> out) noexcept;
   /// The input ended within a compressed frame.
   bool ends_within_frame() const noexcept { return ends_within_frame_; }

@@ -3,7 +3,7 @@
 ///
 /// Numbers keep their meaning: units and axes in the names of columns are taken, and refused where the mapping says otherwise. A
 /// value that is missing (an empty cell, NaN, "-", a rotation of length 0) is put between its neighbours, within CsvMapping::gap. Times that
-/// lie on no grid are resampled, and those of rows that come in groups are spread evenly (csv_pace.h). Whatever was decided is reported in
+/// lie on no grid are resampled, and those of rows that come in groups are spread evenly (csv_rate.h). Whatever was decided is reported in
 /// CsvImport::notes.
 ///
 /// rule      class             broken when
@@ -42,7 +42,7 @@ namespace tactus {
 enum class CsvLayout : std::uint8_t {
   named_columns,  ///< one object, one user, columns as the mapping names them
   tactus,         ///< columns of export_csv(): any objects and users; only tick_rate of the mapping is used. A force without
-                  ///< columns is not known (KnownForces)
+                  ///< columns is not known (RecordedForces)
 };
 
 /// Frame of the recorded angular velocities. A gyroscope on the object measures in the body frame.
@@ -159,7 +159,7 @@ struct CsvImport {
 tl::expected<CsvImport, Diagnostic> import_csv(const std::string& path, const CsvMapping& mapping, const std::string& out_path);
 
 /// One row per tick: tick, time_s, then of each object and user the columns of csv_plan.h, named by their topics
-/// ("/objects/cube/qw"). A force that the trace does not know (KnownForces) has no columns. Numbers are the shortest decimals that
+/// ("/objects/cube/qw"). A force that the trace does not know (RecordedForces) has no columns. Numbers are the shortest decimals that
 /// read back to the same bits. Returns the ticks of the rows.
 /// err  io R-TRC-1: the stream refused; whatever TraceReader::next() reports.
 Result<TickSpan> export_csv(TraceReader& reader, std::ostream& out);

@@ -48,7 +48,7 @@ class NamedPlanner {
     if (!mistake_)
       mistake_ = Diagnostic{.error = fail(code, rule).value(),
                             .line = header_.line,
-                            .detail = place_of_field(column, ""),
+                            .detail = location_of_field(column, ""),
                             .remedy = std::move(remedy)};
   }
 
@@ -367,7 +367,7 @@ void NamedPlanner::plan_subject(const CsvQuantities& q, const std::string& objec
   if (has_angular_velocity && !has_rotation && mapping_.angular_velocity_frame == AngularVelocityFrame::body)
     mistake(Errc::invalid_argument, "R-CSV-8", "rotation");
   const bool has_device = has_group(q.device), has_force = has_group(q.force);
-  CsvQuantities turn;  // of the device, by the same door
+  CsvQuantities turn;  // of the device, by the same path
   turn.rotation = q.device_rotation, turn.euler = q.device_euler;
   turn.rotation_vector = q.device_rotation_vector, turn.rotation_matrix = q.device_rotation_matrix;
   CsvChannel device{.kind = CsvChannel::Kind::device};

@@ -65,7 +65,7 @@ class Planner {
     return 0;
   }
   void note(Errc code, RuleName rule, const std::string& name) {
-    if (!mistake_) mistake_ = Diagnostic{.error = fail(code, rule).value(), .line = 1, .detail = place_of_field(name, "")};
+    if (!mistake_) mistake_ = Diagnostic{.error = fail(code, rule).value(), .line = 1, .detail = location_of_field(name, "")};
   }
 
   static constexpr std::size_t kTwice = SIZE_MAX;
@@ -122,7 +122,7 @@ bool Planner::bind_sense(const std::string& path, const std::array<CsvColumn<Use
 /// One force at least, with all of its columns. The server's stands for the rendered one where that is not known.
 void Planner::plan_forces(const std::string& path) {
   const bool has_server = has_any(path, kServerForceColumns), has_rendered = !has_server || has_any(path, kForceColumns);
-  plan_.info.users.back().forces = !has_server ? KnownForces::rendered : has_rendered ? KnownForces::both : KnownForces::server;
+  plan_.info.users.back().forces = !has_server ? RecordedForces::rendered : has_rendered ? RecordedForces::both : RecordedForces::server;
   bind_user(all_columns(path, has_rendered ? kForceColumns : kServerForceColumns), kForceColumns);
   if (has_server) bind_user(all_columns(path, kServerForceColumns), kServerForceColumns);
 }
@@ -163,10 +163,10 @@ void Planner::plan_tactus_user(const std::string& path) {
 
 }  // namespace
 
-std::string place_of_field(const std::string& column, const std::string& text) {
-  std::string place = column.empty() ? "" : "column " + shown(column);
-  if (!text.empty()) place += (place.empty() ? "'" : ", '") + shown(text) + '\'';
-  return place;
+std::string location_of_field(const std::string& column, const std::string& text) {
+  std::string location = column.empty() ? "" : "column " + shown(column);
+  if (!text.empty()) location += (location.empty() ? "'" : ", '") + shown(text) + '\'';
+  return location;
 }
 
 tl::expected<CsvPlan, Diagnostic> plan_csv(const std::vector<std::string>& names) { return Planner(names).run(); }

@@ -85,8 +85,8 @@ inline constexpr std::array<CsvColumn<UserSample>, 3> kDeviceVelocityColumns{{
 template <class Visit>
 void for_each_column(const TraceUser& user, Visit visit) {
   std::ranges::for_each(kDeviceColumns, visit);
-  if (user.forces != KnownForces::server) std::ranges::for_each(kForceColumns, visit);
-  if (user.forces != KnownForces::rendered) std::ranges::for_each(kServerForceColumns, visit);
+  if (user.forces != RecordedForces::server) std::ranges::for_each(kForceColumns, visit);
+  if (user.forces != RecordedForces::rendered) std::ranges::for_each(kServerForceColumns, visit);
   std::ranges::for_each(kTouchColumns, visit);
   if (user.senses.orientation) std::ranges::for_each(kOrientationColumns, visit);
   if (user.senses.velocity) std::ranges::for_each(kDeviceVelocityColumns, visit);
@@ -135,7 +135,7 @@ struct CsvPlan {
 };
 
 /// Location of a field within its line: "column x, 'oops'".   in  either may be empty
-std::string place_of_field(const std::string& column, const std::string& text);
+std::string location_of_field(const std::string& column, const std::string& text);
 
 /// Of a table of export_csv().   err  R-CSV-2, R-CSV-8, with the offending column.
 tl::expected<CsvPlan, Diagnostic> plan_csv(const std::vector<std::string>& names);

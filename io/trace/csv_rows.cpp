@@ -65,7 +65,7 @@ Diagnostic CsvRows::wrong(RuleName rule, std::string remedy) const {
   const bool is_row = std::string_view(rule) == "R-CSV-3";
   return {.error = fail(Errc::malformed, rule).value(),
           .line = line_,
-          .detail = is_row ? "" : place_of_field(plan_.names[column_], text_),
+          .detail = is_row ? "" : location_of_field(plan_.names[column_], text_),
           .remedy = std::move(remedy)};
 }
 

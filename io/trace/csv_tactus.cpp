@@ -27,7 +27,7 @@ class Importer {
       : mapping_(mapping), plan_(std::move(plan)), out_path_(std::move(out_path)) {}
 
   Result<CsvImport> run(CsvReader& reader);
-  Diagnostic place(const Error& error) const { return {.error = error, .line = line_, .detail = place_of_field(column_, text_)}; }
+  Diagnostic located(const Error& error) const { return {.error = error, .line = line_, .detail = location_of_field(column_, text_)}; }
   bool has_output() const noexcept { return writer_.has_value(); }
 
  private:
@@ -216,7 +216,7 @@ tl::expected<CsvImport, Diagnostic> import_tactus_csv(CsvReader& reader, const C
   const auto done = importer.run(reader);
   has_output = importer.has_output();
   if (done) return *done;
-  return tl::unexpected(importer.place(done.error()));
+  return tl::unexpected(importer.located(done.error()));
 }
 
 }  // namespace tactus

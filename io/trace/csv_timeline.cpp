@@ -16,7 +16,7 @@ namespace tactus {
 namespace {
 
 constexpr std::size_t kWindow = 64;            // rows that may be out of order
-constexpr std::size_t kRowsForRate = 4096;     // looked at before the pace is settled
+constexpr std::size_t kRowsForRate = 4096;     // looked at before the rate is settled
 constexpr double kOnGrid = 0.1, kSame = 1e-3;  // [ticks]
 constexpr double kDefaultGap = 0.1, kGapPeriods = 3;
 
@@ -125,10 +125,10 @@ CsvResult<void> CsvTimeline::find_rate() {
   plan_.info.tick_rate = mapping_.tick_rate;
   if (!plan_.time)
     return mapping_.tick_rate > 0 ? CsvResult<void>() : tl::unexpected(mistake(Errc::invalid_argument, "R-CSV-7", 1, ""));
-  TACTUS_TRY(const CsvPace pace, find_pace(waiting_, mapping_, plan_));
-  plan_.info.tick_rate = pace.tick_rate;
-  resamples_ = pace.is_off_grid;
-  if (pace.period > 0) even_.emplace(pace);
+  TACTUS_TRY(const CsvRate rate, estimate_rate(waiting_, mapping_, plan_));
+  plan_.info.tick_rate = rate.tick_rate;
+  resamples_ = rate.is_off_grid;
+  if (rate.period > 0) even_.emplace(rate);
   return {};
 }
 
@@ -283,10 +283,10 @@ bool CsvTimeline::sample_at(std::size_t channel, std::int64_t tick, RigidSample&
   if (track.is_empty()) return false;
   out = track.value();
   out.pose = track.pose();
-  using Place = SampleTrack<Instant>::Place;
-  if (track.place() == Place::on) return true;
-  if (track.place() == Place::between) largest_gap_ = std::max(largest_gap_, track.span());
-  const bool is_border = track.place() == Place::before || (ended_ && track.next() == nullptr);  // else the next is too far away
+  using Relation = SampleTrack<Instant>::Relation;
+  if (track.relation() == Relation::on) return true;
+  if (track.relation() == Relation::between) largest_gap_ = std::max(largest_gap_, track.span());
+  const bool is_border = track.relation() == Relation::before || (ended_ && track.next() == nullptr);  // else the next is too far away
   const bool is_known = track.is_known() || (is_border && track.is_held());
   made_ += is_known;
   return is_known;

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <tactus/trace/csv_pace.h>
+#include <tactus/trace/csv_rate.h>
 #include <tactus/trace/csv_rows.h>
 #include <tactus/trace/input_budget.h>
 #include <tactus/trace/sample_track.h>

@@ -309,10 +309,10 @@ Result<void> FoxgloveWriter::Impl::declare() {
     UserChannels& own = users.emplace_back();
     TACTUS_TRY(own.scene, add_channel(kSceneSchema, "/scene/users/" + user.name));
     TACTUS_TRY(own.device, add_channel(kPointSchema, "/users/" + user.name + "/device"));
-    if (user.forces != KnownForces::server) {
+    if (user.forces != RecordedForces::server) {
       TACTUS_TRY(own.force, add_channel(kVectorSchema, "/users/" + user.name + "/force"));
     }
-    if (user.forces != KnownForces::rendered) {
+    if (user.forces != RecordedForces::rendered) {
       TACTUS_TRY(own.server_force, add_channel(kVectorSchema, "/users/" + user.name + "/server_force"));
     }
   }

@@ -8,7 +8,7 @@
 /// /scene/meshes/<name>         foxglove_msgs/msg/SceneUpdate                  the first time, and when the shape is new
 /// /scene/users/<name>          foxglove_msgs/msg/SceneUpdate                  each time: device, touched point, forces
 /// /objects/<name>/pose, /users/<name>/device, force, server_force             as in a trace (trace_file.h), each time that is written
-/// A force that the trace does not know (KnownForces) has neither topic nor arrow.
+/// A force that the trace does not know (RecordedForces) has neither topic nor arrow.
 ///
 /// A viewer that jumps in time takes up the last message of every topic: what an entity needs is whole in the last message of its own.
 #pragma once

@@ -32,7 +32,7 @@ struct TraceDeformable {
 };
 
 /// Which of a user's forces a trace knows. Servers do not receive what was rendered to a hand, nor clients what the server rendered.
-enum class KnownForces : std::uint8_t {
+enum class RecordedForces : std::uint8_t {
   both,
   rendered,  ///< UserSample::server_force is 0
   server,  ///< UserSample::force is the server's
@@ -44,7 +44,7 @@ struct TraceUser {
   bool has_servo = false;  ///< a device was captured: how each of its ticks went
   /// What the input reports of the device mean (HID 1.11, section 6.2.2); none: they are not in the trace.
   std::optional<std::vector<std::uint8_t>> report_descriptor{};
-  KnownForces forces = KnownForces::both;
+  RecordedForces forces = RecordedForces::both;
   friend bool operator==(const TraceUser&, const TraceUser&) = default;
 };
 
@@ -99,7 +99,7 @@ struct ServoSample {
 struct UserSample {
   DeviceSample device;
   Contact contact;    ///< contact.device is device.position
-  Vec3 force;         ///< [N] rendered at the client, to the hand (KnownForces)
+  Vec3 force;         ///< [N] rendered at the client, to the hand (RecordedForces)
   Vec3 server_force;  ///< [N] rendered at the server from the true state, same device sample
   std::optional<SurfaceContact> surface_contact{};
   ServoSample servo{};      ///< only with TraceUser::has_servo

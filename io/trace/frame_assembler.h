@@ -24,7 +24,7 @@ class FrameAssembler {
   virtual std::optional<std::uint16_t> frame_channel() const noexcept = 0;
   /// What was decided so far; none: nothing ever is.
   virtual const ReadNotes* notes() const noexcept { return nullptr; }
-  /// Words of the last error; null: its place in the file says all.
+  /// Words of the last error; null: its location in the file says all.
   virtual const Diagnostic* refused() const noexcept { return nullptr; }
 };
 

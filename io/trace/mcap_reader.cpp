@@ -295,7 +295,7 @@ Result<std::optional<Item>> Reader::next_at_top() {
   return take_record(opcode, content);
 }
 
-/// Handle a record that is allowed at its place.
+/// Handle a record that is allowed at its position.
 Result<std::optional<Item>> Reader::take_record(Opcode opcode, ByteReader content) {
   switch (opcode) {
     case Opcode::schema:

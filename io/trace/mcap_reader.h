@@ -62,7 +62,7 @@ class Reader {
     return budget_.spend(bytes) ? Result<void>() : refuse(Errc::limit_exceeded, "R-TRC-18");
   }
 
-  /// An error of this reader, or of what the current message says, with all that is known of the place.
+  /// An error of this reader, or of what the current message says, with all that is known of the location.
   Diagnostic explain(const Error& error) const;
   /// What was decided about the files.
   const ReadNotes& notes() const noexcept { return notes_; }

@@ -19,7 +19,7 @@ namespace tactus::mcap {
 /// Writes an MCAP file front to back: messages in zstd chunks with message indexes, then a summary with all indexes and
 /// statistics, and every check value that the format offers. Equal calls give equal bytes. A chunk that would exceed a reader's
 /// remaining budget when unpacked is stored uncompressed, so that no file of ours is refused.
-/// err (all)  io R-TRC-1: the operating system refused; the file is then unusable from that place on.
+/// err (all)  io R-TRC-1: the operating system refused; the file is then unusable from that position on.
 class Writer {
  public:
   /// path "-" is standard output.

@@ -29,7 +29,7 @@ Message contact_message() {
       "std_msgs/Header header\n"
       "# SURFACE: force along the face's normal only. SPRING: probe tied to a point, whole vector.\n"
       "uint8 kind\n"
-      "# The object touched, by its place in the trace and by its name.\n"
+      "# The object touched, by its index in the trace and by its name.\n"
       "uint32 object_index\n"
       "string object\n"
       "# [m] in the object's frame: a point of the face, or the spring's anchor.\n"
@@ -105,7 +105,7 @@ Message message_of(MessageType type) {
   return {
       "# A user's probe touches one mesh. No message at a tick: no contact.\n"
       "std_msgs/Header header\n"
-      "# The mesh touched, by its place in the trace and by its name, and the triangle.\n"
+      "# The mesh touched, by its index in the trace and by its name, and the triangle.\n"
       "uint32 mesh_index\n"
       "string mesh\n"
       "uint32 triangle\n"

@@ -44,7 +44,7 @@ class ReadWatcher {
   virtual void on_read(std::uint64_t bytes, std::uint64_t all) = 0;
 };
 
-/// Notes of one recording, each place and sentence once, with how often. What: in the singular; the count stands behind.
+/// Notes of one recording, each location and sentence once, with how often. What: in the singular; the count stands behind.
 class ReadNotes {
  public:
   /// time O(notes): few; memory bounded by kMost notes, what comes after is counted in the last

@@ -42,7 +42,7 @@ class RosOrder {
   /// Times below this one are final.
   void reach(std::uint64_t time) noexcept { final_ = std::max(final_, time); }
   void end() noexcept { final_ = std::numeric_limits<std::uint64_t>::max(); }
-  /// The next sample whose place is certain, or that the window has no room to hold back.
+  /// The next sample whose order is certain, or that the window has no room to hold back.
   std::optional<RosSample> take() {
     if (waiting_.empty() || (waiting_.top().sample.time > final_ && waiting_.size() <= kMostSorted)) return std::nullopt;
     const RosSample sample = waiting_.top().sample;
@@ -194,7 +194,7 @@ std::vector<std::string> RosAssembler::find_objects() {
         continue;
       }
       if (kind == Kind::pose && !source.is_odometry) by_path[path_of(source.topic)] = objects_.size();
-      info_.objects.push_back({free_name(std::move(name), survey_.place_of(i), names), Dof::all});
+      info_.objects.push_back({free_name(std::move(name), survey_.location_of(i), names), Dof::all});
       objects_.push_back({i});
     }
   for (std::uint32_t i = 0; i < sources.size(); ++i) {
@@ -217,7 +217,7 @@ void RosAssembler::take_twist(Object& object, std::uint32_t twist) {
   const SourceFacts& pose = survey_.facts(object.source);
   const bool is_left_open = survey_.facts(twist).speed == 0 && (pose.moved > kMoved || pose.turned > kTurned);
   if (!is_left_open) object.twist = twist;
-  else notes_.add(survey_.place_of(twist), "is 0 throughout, though the object moves: velocities follow from the poses");
+  else notes_.add(survey_.location_of(twist), "is 0 throughout, though the object moves: velocities follow from the poses");
 }
 
 /// A name that was typed wrong takes or leaves out nothing.
@@ -265,7 +265,7 @@ Result<bool> RosAssembler::take(mcap::Reader& mcap) {
   while (true) {
     if (const auto sample = order_.take()) {
       if (sample->time < released_) {
-        notes_.add(survey_.place_of(sample->source), "came too late to be sorted: left out", survey_.text_of_time(sample->log));
+        notes_.add(survey_.location_of(sample->source), "came too late to be sorted: left out", survey_.text_of_time(sample->log));
         continue;
       }
       released_ = sample->time;
@@ -286,7 +286,7 @@ Result<bool> RosAssembler::take(mcap::Reader& mcap) {
     const std::int64_t added = samples_.sources()[sample->source].is_static ? 0 : survey_.steps().added_at(sample->ordinal);
     const auto time = survey_.clock().time_of(*sample, added);
     if (!time) {
-      notes_.add(survey_.place_of(sample->source), "its header stamp is far from its log time: left out",
+      notes_.add(survey_.location_of(sample->source), "its header stamp is far from its log time: left out",
                  survey_.text_of_time(sample->log));
       continue;
     }
@@ -340,7 +340,7 @@ Result<bool> RosAssembler::skip(mcap::Reader& mcap, std::uint64_t time) {
       if (since / 1'000'000'000 >= static_cast<std::uint64_t>(kMaxSeconds) - 1) {
         const Error error = fail(Errc::invalid, "R-TRC-15", 8 * mcap.offset()).value();
         refused_ = {.error = error,
-                    .detail = survey_.place_of(source) + ", at " + std::to_string(since / 1'000'000'000) + " s",
+                    .detail = survey_.location_of(source) + ", at " + std::to_string(since / 1'000'000'000) + " s",
                     .cause = "times go on to more than the 2^31 s that a trace holds",
                     .remedy = "Convert it with `tactus import ros`: --stamps header takes the times of the headers, --skip " +
                               samples_.sources()[source].topic + " leaves the topic out."};

@@ -57,61 +57,61 @@ std::uint64_t GapStatistics::longer_than(double seconds) const {
   return count;
 }
 
-GapStatistics::Pace GapStatistics::pace() const {
-  Pace pace;
+GapStatistics::Timing GapStatistics::timing() const {
+  Timing timing;
   double all = 0, sum = 0;
   for (const auto& [number, bin] : bins_) all += static_cast<double>(bin.count), sum += bin.sum;
-  if (all == 0) return pace;
+  if (all == 0) return timing;
   const double pause = std::max(1.0, 10 * sum / all);
   double count = 0, seen = 0;
   for (const auto& [number, bin] : bins_) {
     if (bin.sum > pause * static_cast<double>(bin.count)) continue;
     count += static_cast<double>(bin.count);
-    pace.length += bin.sum;
+    timing.length += bin.sum;
   }
   if (count == 0) {  // nothing but pauses
     count = all;
-    pace.length = sum;
+    timing.length = sum;
   }
   for (const auto& [number, bin] : bins_) {
     seen += static_cast<double>(bin.count);
-    pace.median = bin.sum / static_cast<double>(bin.count);
+    timing.median = bin.sum / static_cast<double>(bin.count);
     if (2 * seen > count) break;
   }
-  const double mean = pace.length / count;
-  if (mean > kBurst * pace.median && count >= 8) {
+  const double mean = timing.length / count;
+  if (mean > kBurst * timing.median && count >= 8) {
     double longer = 0, within = 0;  // gaps between bursts; sum of those within
     for (const auto& [number, bin] : bins_)
       if (bin.sum > mean * static_cast<double>(bin.count)) longer += static_cast<double>(bin.count);
       else within += bin.sum;
-    pace.bursts = longer > 0 ? std::max(2.0, std::round((count + 1) / (longer + 1))) : count;
-    pace.period = mean;  // else from the beginning of the first burst to that of the last
-    if (longer > 0) pace.period = (pace.length - within / (longer + 1)) / ((count + 1) * longer / (longer + 1));
-    return pace;
+    timing.bursts = longer > 0 ? std::max(2.0, std::round((count + 1) / (longer + 1))) : count;
+    timing.period = mean;  // else from the beginning of the first burst to that of the last
+    if (longer > 0) timing.period = (timing.length - within / (longer + 1)) / ((count + 1) * longer / (longer + 1));
+    return timing;
   }
   double periods = 0;
   for (const auto& [number, bin] : bins_) {
     const double gap = bin.sum / static_cast<double>(bin.count);
-    if (gap <= pause || pace.length == sum) periods += std::round(gap / pace.median) * static_cast<double>(bin.count);
+    if (gap <= pause || timing.length == sum) periods += std::round(gap / timing.median) * static_cast<double>(bin.count);
   }
-  pace.period = periods > 0 ? pace.length / periods : mean;
+  timing.period = periods > 0 ? timing.length / periods : mean;
   double squares = 0, near = 0;
   for (const auto& [number, bin] : bins_) {
     const double gap = bin.sum / static_cast<double>(bin.count);
-    if (gap > 1.5 * pace.period) continue;
+    if (gap > 1.5 * timing.period) continue;
     near += static_cast<double>(bin.count);
-    squares += (gap - pace.period) * (gap - pace.period) * static_cast<double>(bin.count);
+    squares += (gap - timing.period) * (gap - timing.period) * static_cast<double>(bin.count);
   }
-  if (near > 0) pace.spread = std::sqrt(squares / near);
-  return pace;
+  if (near > 0) timing.spread = std::sqrt(squares / near);
+  return timing;
 }
 
-std::uint32_t rate_of(const GapStatistics::Pace& pace) noexcept {
-  if (!(pace.period > 0)) return TraceInfo().tick_rate;
-  const double rate = std::clamp(1 / pace.period, 1.0, static_cast<double>(kMaxTickRate));
+std::uint32_t rate_of(const GapStatistics::Timing& timing) noexcept {
+  if (!(timing.period > 0)) return TraceInfo().tick_rate;
+  const double rate = std::clamp(1 / timing.period, 1.0, static_cast<double>(kMaxTickRate));
   // the first and the last time are off by a spread each; a burst's by its length; stamps may be cut to microseconds
-  const double ends = 2 * std::max(pace.spread, 1e-6) + (pace.in_bursts() ? pace.bursts * pace.period : 0.0);
-  const double uncertain = pace.length > 0 ? rate * std::min(ends / pace.length, 0.25) : 0;
+  const double ends = 2 * std::max(timing.spread, 1e-6) + (timing.in_bursts() ? timing.bursts * timing.period : 0.0);
+  const double uncertain = timing.length > 0 ? rate * std::min(ends / timing.length, 0.25) : 0;
   for (const double step : {1000.0, 500.0, 100.0, 50.0, 25.0, 20.0, 10.0, 5.0}) {
     const double whole = std::round(rate / step) * step;
     if (whole > 0 && std::abs(whole - rate) <= uncertain) return static_cast<std::uint32_t>(whole);
@@ -174,7 +174,7 @@ void RosClock::choose(const std::vector<SourceFacts>& facts, const std::vector<b
   takes_stamps_ = wanted == RosStamps::header;
   for (std::size_t i = 0; i < facts.size() && wanted == RosStamps::automatic; ++i) {
     if (!moving[i] || facts[i].samples < 8 || !facts[i].stamps_are_usable()) continue;
-    const auto log = facts[i].log.pace(), stamps = facts[i].stamps.pace();
+    const auto log = facts[i].log.timing(), stamps = facts[i].stamps.timing();
     if (stamps.in_bursts() || !(stamps.period > 0)) continue;
     const bool agrees =
         std::abs(facts[i].log.length() - facts[i].stamps.length()) < 0.01 * facts[i].log.length() + log.bursts * log.period;
@@ -192,7 +192,7 @@ void RosClock::choose(const std::vector<SourceFacts>& facts, const std::vector<b
       most = std::max(most, std::min(facts[i].most_lag, facts[i].least_lag + kFar) - use.offset);
       continue;
     }
-    const auto log = facts[i].log.pace();
+    const auto log = facts[i].log.timing();
     if (moving[i] && log.in_bursts()) {
       use.spread = static_cast<std::uint64_t>(std::llround(1e9 * log.period));
       use.far = std::llround(1e9 * (20 + 2 * log.bursts) * log.period) + kSecond / 10;
@@ -203,8 +203,8 @@ void RosClock::choose(const std::vector<SourceFacts>& facts, const std::vector<b
   disorder_ = static_cast<std::uint64_t>(most - least);
 }
 
-GapStatistics::Pace RosClock::pace(std::uint32_t source, const std::vector<SourceFacts>& facts) const {
-  return uses_[source].stamp ? facts[source].stamps.pace() : facts[source].log.pace();
+GapStatistics::Timing RosClock::timing(std::uint32_t source, const std::vector<SourceFacts>& facts) const {
+  return uses_[source].stamp ? facts[source].stamps.timing() : facts[source].log.timing();
 }
 
 std::optional<std::uint64_t> RosClock::time_of(const RosSample& sample, std::int64_t added) {

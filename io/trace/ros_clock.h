@@ -18,7 +18,7 @@ class GapStatistics {
  public:
   void add(std::uint64_t time);
 
-  struct Pace {
+  struct Timing {
     double period = 0;  ///< [s] between samples, lost ones and pauses counted out; 0: unknown
     double median = 0;  ///< [s] gap
     double spread = 0;  ///< [s] standard deviation of gaps shorter than 1.5 periods
@@ -26,7 +26,7 @@ class GapStatistics {
     double bursts = 1;  ///< samples that come at once
     bool in_bursts() const noexcept { return bursts > 1; }
   };
-  Pace pace() const;
+  Timing timing() const;
   std::uint64_t count() const noexcept { return count_; }
   std::uint64_t first() const noexcept { return first_; }
   std::uint64_t last() const noexcept { return last_; }
@@ -90,7 +90,7 @@ struct SourceFacts {
   Vec3 before{}, before_that{};  ///< positions of the last two
   std::uint64_t returns = 0;     ///< positions where the one before the last was, and the last was elsewhere
   double return_distance = 0;    ///< [m] largest
-  /// Its poses go to and fro between two places.
+  /// Its poses go to and fro between two positions.
   bool swings() const noexcept { return samples >= 8 && 2 * returns > samples; }
   bool stamps_are_usable() const noexcept;
 };
@@ -106,8 +106,8 @@ class RosClock {
   std::int64_t offset(std::uint32_t source) const noexcept { return uses_[source].offset; }
   /// [ns] by which the order of these times may differ from that of the log
   std::uint64_t disorder() const noexcept { return disorder_; }
-  /// Pace of a source by its clock.
-  GapStatistics::Pace pace(std::uint32_t source, const std::vector<SourceFacts>& facts) const;
+  /// Timing of a source by its clock.
+  GapStatistics::Timing timing(std::uint32_t source, const std::vector<SourceFacts>& facts) const;
   /// in  added  what a step of the log's clock adds;   none: of that sample there is no time
   std::optional<std::uint64_t> time_of(const RosSample& sample, std::int64_t added);
 
@@ -124,7 +124,7 @@ class RosClock {
   std::uint64_t disorder_ = 0;
 };
 
-/// The whole number of ticks per second that this pace means: the roundest one within its uncertainty.
-std::uint32_t rate_of(const GapStatistics::Pace& pace) noexcept;
+/// The whole number of ticks per second that this timing means: the roundest one within its uncertainty.
+std::uint32_t rate_of(const GapStatistics::Timing& timing) noexcept;
 
 }  // namespace tactus

@@ -27,7 +27,7 @@ std::optional<std::uint64_t> RosTrack::next_time() const noexcept {
 RigidSample RosTrack::state() noexcept { return has_samples() ? track_.moving(kNanosecond) : first_->value; }
 
 std::optional<Twist> RosTrack::twist(std::uint64_t near) const noexcept {
-  const bool has_twist = track_.is_known() || (track_.place() == Track::Place::after && covers(near));
+  const bool has_twist = track_.is_known() || (track_.relation() == Track::Relation::after && covers(near));
   if (!has_twist) return std::nullopt;
   const RigidSample sample = track_.is_known() ? track_.value() : track_.last();
   return Twist{sample.velocity, sample.angular_velocity};

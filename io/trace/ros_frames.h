@@ -40,7 +40,7 @@ class RosTrack {
 
  private:
   using Track = SampleTrack<std::int64_t>;
-  bool has_samples() const noexcept { return track_.place() != Track::Place::nowhere; }
+  bool has_samples() const noexcept { return track_.relation() != Track::Relation::nowhere; }
 
   std::optional<RosSample> first_;  // where it stands before
   Track track_;
@@ -50,7 +50,7 @@ class RosTrack {
 /// What hangs on a frame that moves, in the world.
 RigidSample hung(const RigidSample& frame, const RigidSample& own) noexcept;
 
-/// Places of frames in the world at one tick, and how they move. A frame that hangs on none is the world.
+/// Poses of frames in the world at one tick, and how they move. A frame that hangs on none is the world.
 class RosFrames {
  public:
   RosFrames(RosSamples& samples, std::vector<RosTrack>& tracks, ReadNotes& notes);

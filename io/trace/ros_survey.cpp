@@ -21,7 +21,7 @@ constexpr double kLeastGap = 0.1, kMostGap = 10, kGapsOfMedian = 3;  // [s], [s]
 constexpr double kSlow = 10;                                         // [1/s]
 constexpr double kStray = 60, kOtherEpoch = 3e7;                     // [s] between log times that do not belong together
 constexpr std::size_t kMostStrays = 4096;
-constexpr double kSwing = 1e-3;  // [m] shortest path to and fro between places
+constexpr double kSwing = 1e-3;  // [m] shortest path to and fro between positions
 
 std::string text(double value, const char* format = "%.6g") {
   std::array<char, 40> out{};
@@ -48,7 +48,7 @@ Errc class_of(RosFault fault) noexcept {
 
 }  // namespace
 
-std::string RosSurvey::place_of(std::uint32_t source) const {
+std::string RosSurvey::location_of(std::uint32_t source) const {
   const RosSource& s = samples_.sources()[source];
   if (s.kind == Kind::link) return "frame " + samples_.name(s.child) + " of " + s.topic;
   return s.kind == Kind::twist && s.is_odometry ? "twist of " + s.topic : s.topic;
@@ -151,7 +151,7 @@ tl::expected<void, Diagnostic> RosSurvey::check() const {
   if (first_fault_ && (options_.strict || !any)) {
     const RosFault fault = first_fault_->fault;
     return tl::unexpected(Diagnostic{.error = fail(class_of(fault), rule_of(fault)).value(),
-                                     .detail = place_of(first_fault_->source) + ", " + text_of_time(first_fault_->log),
+                                     .detail = location_of(first_fault_->source) + ", " + text_of_time(first_fault_->log),
                                      .cause = text_of(fault),
                                      .remedy = options_.strict ? "Without --strict such samples count as missing."
                                                                : "No sample of the recording can be used: check what wrote it."});
@@ -200,10 +200,10 @@ void RosSurvey::find_start() {
   for (std::uint32_t i = 0; i < sources.size(); ++i) {
     if (!moving_[i]) continue;
     log_start_ = std::min(log_start_, facts_[i].log.first());
-    const auto pace = clock_.pace(i, facts_);
+    const auto timing = clock_.timing(i, facts_);
     gaps_[i] = static_cast<std::uint64_t>(
         1e9 *
-        (options_.gap > 0 ? options_.gap : std::clamp(kGapsOfMedian * std::max(pace.median, pace.period), kLeastGap, kMostGap)));
+        (options_.gap > 0 ? options_.gap : std::clamp(kGapsOfMedian * std::max(timing.median, timing.period), kLeastGap, kMostGap)));
     const std::uint64_t first =
         clock_.takes_stamp(i) ? facts_[i].stamps.first() + static_cast<std::uint64_t>(clock_.offset(i)) : facts_[i].log.first();
     start_ = std::min(start_, first);
@@ -211,7 +211,7 @@ void RosSurvey::find_start() {
     if (is_better) most = facts_[i].samples, densest_ = i;
   }
   if (start_ == std::numeric_limits<std::uint64_t>::max()) start_ = log_start_;
-  tick_rate_ = options_.tick_rate > 0 ? options_.tick_rate : rate_of(clock_.pace(densest_, facts_));
+  tick_rate_ = options_.tick_rate > 0 ? options_.tick_rate : rate_of(clock_.timing(densest_, facts_));
 }
 
 // ==== notes ====
@@ -245,9 +245,9 @@ void RosSurvey::note_clock(ReadNotes& notes) const {
   for (std::uint32_t i = 0; i < facts_.size(); ++i) {
     if (!moving_[i] || facts_[i].samples < 8 || facts_[i].stampless > 0) continue;
     const double log = facts_[i].log.length(), stamps = facts_[i].stamps.length();
-    const double slack = 2 * facts_[i].log.pace().bursts * facts_[i].log.pace().period;
+    const double slack = 2 * facts_[i].log.timing().bursts * facts_[i].log.timing().period;
     if (std::abs(log - stamps) > 0.01 * std::max(log, stamps) + slack)
-      notes.add(place_of(i),
+      notes.add(location_of(i),
                 "log times span " + seconds(log) + ", header stamps " + seconds(stamps) + "; check which clock is right");
   }
 }
@@ -258,18 +258,18 @@ void RosSurvey::note_stamps(ReadNotes& notes) const {
   for (std::uint32_t i = 0; i < facts_.size(); ++i) {
     const SourceFacts& facts = facts_[i];
     if (!moving_[i]) continue;
-    const auto log = facts.log.pace();
+    const auto log = facts.log.timing();
     const std::string bursts = log.in_bursts() ? "log times come in bursts of " + text(log.bursts, "%.0f") : "log times jitter";
     if (clock_.takes_stamp(i)) {
       const double offset = 1e-9 * static_cast<double>(clock_.offset(i));
-      notes.add(place_of(i),
+      notes.add(location_of(i),
                 "header stamps taken: " + (options_.stamps == RosStamps::header ? std::string("as asked for") : bursts) +
                     (offset != 0 ? "; they are of another clock, moved by " + seconds(offset) : ""));
     } else if (clock_.spreads(i)) {
-      notes.add(place_of(i),
+      notes.add(location_of(i),
                 bursts + " and header stamps do not help: samples are spread evenly, " + text(1 / log.period) + " per second");
     } else if (clock_.takes_stamps()) {
-      notes.add(place_of(i), "log times taken: header stamps are missing or fall");
+      notes.add(location_of(i), "log times taken: header stamps are missing or fall");
     } else if (facts.stamps.count() > 0) {
       least = any ? std::min(least, 1e-9 * static_cast<double>(facts.least_lag)) : 1e-9 * static_cast<double>(facts.least_lag);
       most = any ? std::max(most, 1e-9 * static_cast<double>(facts.most_lag)) : 1e-9 * static_cast<double>(facts.most_lag);
@@ -284,21 +284,21 @@ void RosSurvey::note_stamps(ReadNotes& notes) const {
 }
 
 void RosSurvey::note_rate(ReadNotes& notes) const {
-  const auto pace = clock_.pace(densest_, facts_);
-  if (!moving_[densest_] || !(pace.period > 0)) return;
-  const double rate = 1 / pace.period;
+  const auto timing = clock_.timing(densest_, facts_);
+  if (!moving_[densest_] || !(timing.period > 0)) return;
+  const double rate = 1 / timing.period;
   if (options_.tick_rate == 0 && rate < kSlow)
-    notes.add(place_of(densest_), "only " + text(rate) + " samples per second: check the unit of the times, or give --rate");
+    notes.add(location_of(densest_), "only " + text(rate) + " samples per second: check the unit of the times, or give --rate");
   const double length = clock_.takes_stamp(densest_) ? facts_[densest_].stamps.length() : facts_[densest_].log.length();
   const double expected = length * rate + 1;
   if (static_cast<double>(facts_[densest_].samples) < 0.5 * expected)
-    notes.add(place_of(densest_), "more than half of the time nothing is recorded: check the unit of the times, or give --rate");
+    notes.add(location_of(densest_), "more than half of the time nothing is recorded: check the unit of the times, or give --rate");
   for (std::uint32_t i = 0; i < facts_.size(); ++i) {
-    const auto own = clock_.pace(i, facts_);
+    const auto own = clock_.timing(i, facts_);
     if (!moving_[i] || !(own.period > 0) || std::abs(tick_rate_ * own.period - 1) <= 0.1) continue;
     const Kind kind = samples_.sources()[i].kind;
     const bool is_curve = (kind == Kind::pose || kind == Kind::link) && tick_rate_ * own.period > 1.5;
-    notes.add(place_of(i), text(1 / own.period, "%.4g") + " samples per second are interpolated to " +
+    notes.add(location_of(i), text(1 / own.period, "%.4g") + " samples per second are interpolated to " +
                                std::to_string(tick_rate_) + " ticks" +
                                (is_curve ? ", on parabolas where the motion bends alike at neighbours, else on lines" : ""));
   }
@@ -309,21 +309,21 @@ void RosSurvey::note_source(std::uint32_t source, ReadNotes& notes) const {
   const Kind kind = samples_.sources()[source].kind;
   for (const auto& [key, seen] : faults_)
     if (key.first == source)
-      notes.add(place_of(source), std::string("a sample is missing: ") + text_of(key.second), text_of_time(seen.log), seen.count);
+      notes.add(location_of(source), std::string("a sample is missing: ") + text_of(key.second), text_of_time(seen.log), seen.count);
   if (const auto found = ignored_.find(source); found != ignored_.end())
-    notes.add(place_of(source), kind == Kind::force ? "torques are ignored" : "covariances are ignored");
+    notes.add(location_of(source), kind == Kind::force ? "torques are ignored" : "covariances are ignored");
   if (const auto copies = samples_.copies().find(source); copies != samples_.copies().end())
-    notes.add(place_of(source), "a sample with the stamp and the value of the one before: left out", {}, copies->second);
+    notes.add(location_of(source), "a sample with the stamp and the value of the one before: left out", {}, copies->second);
   if (facts.swings())
-    notes.add(place_of(source), "its samples go to and fro between two places, up to " + text(facts.return_distance, "%.3g") +
+    notes.add(location_of(source), "its samples go to and fro between two positions, up to " + text(facts.return_distance, "%.3g") +
                                     " m apart, as of two publishers: let each have a topic of its own");
   if (facts.samples == 0) return;
   if (!moving_[source]) return note_rest(source, notes);
   const GapStatistics& times = clock_.takes_stamp(source) ? facts.stamps : facts.log;
   if (times.equal() > 0 && !clock_.spreads(source))
-    notes.add(place_of(source), "a sample at the time of the one before: of equal times the last counts", {}, times.equal());
+    notes.add(location_of(source), "a sample at the time of the one before: of equal times the last counts", {}, times.equal());
   if (facts.log.backward() > 0)
-    notes.add(place_of(source),
+    notes.add(location_of(source),
               "a time before the one that stands before, by up to " +
                   seconds(1e-9 * static_cast<double>(facts.log.farthest_back())) + "; sorted",
               {}, facts.log.backward());
@@ -334,8 +334,8 @@ void RosSurvey::note_source(std::uint32_t source, ReadNotes& notes) const {
 void RosSurvey::note_rest(std::uint32_t source, ReadNotes& notes) const {
   const SourceFacts& facts = facts_[source];
   if (facts.log.first() > log_start_ + gaps_[source])
-    notes.add(place_of(source), std::string("is published ") + text_of_time(facts.log.first()) + "; it holds from the beginning");
-  if (facts.moved > 0 || facts.turned > 0) notes.add(place_of(source), "is published with another value; it jumps then");
+    notes.add(location_of(source), std::string("is published ") + text_of_time(facts.log.first()) + "; it holds from the beginning");
+  if (facts.moved > 0 || facts.turned > 0) notes.add(location_of(source), "is published with another value; it jumps then");
 }
 
 void RosSurvey::note_gaps(std::uint32_t source, ReadNotes& notes) const {
@@ -347,13 +347,13 @@ void RosSurvey::note_gaps(std::uint32_t source, ReadNotes& notes) const {
   const char* before = is_force ? "before, the force is 0" : "before, it stands at its first pose";
   const auto& densest = clock_.takes_stamp(densest_) ? facts_[densest_].stamps : facts_[densest_].log;
   if (kind != Kind::twist && facts.log.first() > log_start_ + gaps_[source])
-    notes.add(place_of(source), std::string("begins ") + text_of_time(facts.log.first()) + "; " + before);
+    notes.add(location_of(source), std::string("begins ") + text_of_time(facts.log.first()) + "; " + before);
   if (kind != Kind::twist && times.last() + gaps_[source] < densest.last() &&
       clock_.takes_stamp(source) == clock_.takes_stamp(densest_))
-    notes.add(place_of(source),
+    notes.add(location_of(source),
               "ends " + text_of_time(facts.log.last()) + (is_force ? "; after, the force is 0" : "; after, it rests"));
   if (!clock_.spreads(source) && times.largest() > gap)
-    notes.add(place_of(source),
+    notes.add(location_of(source),
               "a gap longer than " + text(gap, "%.3g") + " s, the largest " + seconds(times.largest()) +
                   (is_force ? ": the force is held for as long, then 0" : ": it rests there"),
               {}, times.longer_than(gap));
@@ -363,7 +363,7 @@ void RosSurvey::note_frames(ReadNotes& notes) {
   const auto& sources = samples_.sources();
   for (const auto& [source, change] : changes_) {
     const bool is_link = sources[source].kind == Kind::link;
-    notes.add(place_of(source),
+    notes.add(location_of(source),
               std::string(is_link ? "hangs on another frame: " : "is expressed in another frame: ") + samples_.name(change.to) +
                   ", before on " + samples_.name(change.from) + "; followed",
               text_of_time(change.log), change.count);
@@ -372,7 +372,7 @@ void RosSurvey::note_frames(ReadNotes& notes) {
     if (facts_[i].samples == 0) continue;
     const auto link = samples_.link_of(sources[i].space, facts_[i].first->frame);
     if (link && sources[*link].child != facts_[i].first->frame)
-      notes.add(place_of(i), "frame '" + samples_.name(facts_[i].first->frame) + "' is taken for '" +
+      notes.add(location_of(i), "frame '" + samples_.name(facts_[i].first->frame) + "' is taken for '" +
                                  samples_.name(sources[*link].child) + "' of " + sources[*link].topic);
   }
   std::map<std::string, std::vector<std::uint32_t>> roots;  // frames that are taken for the world
@@ -384,14 +384,14 @@ void RosSurvey::note_frames(ReadNotes& notes) {
     if (sources[i].kind == Kind::pose && !hangs) roots[name].push_back(i);
     if (sources[i].kind == Kind::link && !hangs) roots[name].push_back(i);
     if (sources[i].kind == Kind::twist && !hangs)
-      notes.add(place_of(i), "frame '" + name + "' is in no tree: the twist is taken " +
+      notes.add(location_of(i), "frame '" + name + "' is in no tree: the twist is taken " +
                                  (sources[i].is_odometry ? "in the frame of the pose" : "in the world"));
   }
   for (std::uint32_t i = 0; i < sources.size(); ++i) {
     if (sources[i].kind != Kind::force || facts_[i].samples == 0) continue;
     const std::uint32_t frame = facts_[i].first->frame;
     if (roots.contains(samples_.name(frame)) || samples_.is_in_tree(sources[i].space, frame)) continue;
-    notes.add(place_of(i), "frame '" + samples_.name(frame) +
+    notes.add(location_of(i), "frame '" + samples_.name(frame) +
                                "' is in no tree: the force is not turned, and acts at the topic beside, if there is one");
   }
   for (const auto& [name, which] : roots) {
@@ -401,8 +401,8 @@ void RosSurvey::note_frames(ReadNotes& notes) {
     }
     std::set<std::string> noted;
     for (const std::uint32_t i : which)
-      if (noted.insert(place_of(i)).second)
-        notes.add(place_of(i), "hangs on frame '" + name + "', of which nothing is known: taken for the world, like others");
+      if (noted.insert(location_of(i)).second)
+        notes.add(location_of(i), "hangs on frame '" + name + "', of which nothing is known: taken for the world, like others");
   }
 }
 

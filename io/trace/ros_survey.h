@@ -38,7 +38,7 @@ class RosSurvey {
   ClockSteps& steps() noexcept { return steps_; }
   RosClock& clock() noexcept { return clock_; }
   /// A topic, or "frame hand of /tf".
-  std::string place_of(std::uint32_t source) const;
+  std::string location_of(std::uint32_t source) const;
   std::string text_of_time(std::uint64_t log) const;  ///< "at 3.021 s"
 
  private:

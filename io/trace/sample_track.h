@@ -4,7 +4,7 @@
 ///
 /// Between two samples that are not farther apart than the gap, values follow a line and rotations the shorter arc; poses a parabola in place
 /// of them where the motion bends alike at both samples (Curve). Elsewhere the value is that of the first sample ahead of it, of the last one
-/// behind it, and between two that are too far apart that of the one before, without velocity. What has no place to rest at, as a force, is 0
+/// behind it, and between two that are too far apart that of the one before, without velocity. What has no position to rest at, as a force, is 0
 /// where no such sample is within the gap. Of samples with the same time the last counts.
 #pragma once
 
@@ -58,7 +58,7 @@ class SampleTrack {
  public:
   struct Sample {
     Time at{};
-    RigidSample value{};      ///< a vector alone has its place in the position
+    RigidSample value{};      ///< a vector alone is in the position
     std::uint32_t frame = 0;  ///< in which it is expressed: samples of different frames have nothing between them
   };
   struct Limits {
@@ -66,7 +66,7 @@ class SampleTrack {
     double same = 0;  ///< up to here times are the same
     double tick = 0;  ///< shortest span over which a velocity is taken
   };
-  enum class Place : std::uint8_t {
+  enum class Relation : std::uint8_t {
     nowhere,  ///< there is no sample
     before,   ///< the first
     on,       ///< a sample
@@ -82,23 +82,23 @@ class SampleTrack {
     if (!samples_.empty() && since(sample.at, samples_.back().at) <= limits_.same) samples_.back() = sample;
     else samples_.push_back(sample);
   }
-  void clear() noexcept { samples_.clear(), at_ = 0, has_slopes_ = has_curve_ = false, place_ = Place::nowhere; }
+  void clear() noexcept { samples_.clear(), at_ = 0, has_slopes_ = has_curve_ = false, relation_ = Relation::nowhere; }
   /// pre  times do not fall
   void move_to(const Time& time);
 
-  Place place() const noexcept { return place_; }
-  bool is_known() const noexcept { return place_ == Place::on || place_ == Place::between; }
+  Relation relation() const noexcept { return relation_; }
+  bool is_known() const noexcept { return relation_ == Relation::on || relation_ == Relation::between; }
   /// The value is that of a sample at another time, no farther away than the gap.
   bool is_held() const noexcept {
-    const bool is_beside = place_ == Place::before || place_ == Place::after;
+    const bool is_beside = relation_ == Relation::before || relation_ == Relation::after;
     return is_beside && std::abs(since(time_, samples_[at_].at)) <= limits_.gap;
   }
   /// A sample is so near, or two are around.
   bool is_near(double most) const noexcept;
-  /// Distance of the two samples around.   pre  place() is between
+  /// Distance of the two samples around.   pre  relation() is between
   double span() const noexcept { return since(samples_[at_ + 1].at, samples_[at_].at); }
   std::uint32_t frame() const noexcept { return samples_[at_].frame; }
-  /// On lines.   pre  place() is not nowhere
+  /// On lines.   pre  relation() is not nowhere
   RigidSample value() const noexcept;
   /// On curves.   pre  likewise
   Pose pose() noexcept;
@@ -136,7 +136,7 @@ class SampleTrack {
   std::deque<Sample> samples_;
   std::size_t at_ = 0;  // the last one not behind the time, or the first
   Time time_{};
-  Place place_ = Place::nowhere;
+  Relation relation_ = Relation::nowhere;
   double fraction_ = 0;
   bool has_slopes_ = false, has_curve_ = false;
   Twist from_, to_;
@@ -149,34 +149,34 @@ void SampleTrack<Time>::move_to(const Time& time) {
   while (at_ + 1 < samples_.size() && since(samples_[at_ + 1].at, time) <= limits_.same) ++at_, has_slopes_ = has_curve_ = false;
   while (at_ > 1 && 2 * since(samples_[at_].at, samples_[1].at) >= limits_.tick) samples_.pop_front(), --at_;
   fraction_ = 0;
-  place_ = Place::nowhere;
+  relation_ = Relation::nowhere;
   if (samples_.empty()) return;
   const double past = since(time, samples_[at_].at);
-  if (std::abs(past) <= limits_.same) place_ = Place::on;
-  else if (past < 0) place_ = Place::before;
-  else if (at_ + 1 == samples_.size() || !are_joined(at_, at_ + 1)) place_ = Place::after;
-  else place_ = Place::between, fraction_ = past / span();
+  if (std::abs(past) <= limits_.same) relation_ = Relation::on;
+  else if (past < 0) relation_ = Relation::before;
+  else if (at_ + 1 == samples_.size() || !are_joined(at_, at_ + 1)) relation_ = Relation::after;
+  else relation_ = Relation::between, fraction_ = past / span();
 }
 
 template <class Time>
 bool SampleTrack<Time>::is_near(double most) const noexcept {
-  if (place_ == Place::nowhere || is_known()) return is_known();
+  if (relation_ == Relation::nowhere || is_known()) return is_known();
   const Sample* after = next();
   return std::abs(since(time_, samples_[at_].at)) <= most || (after != nullptr && since(after->at, time_) <= most);
 }
 
 template <class Time>
 RigidSample SampleTrack<Time>::value() const noexcept {
-  if (place_ == Place::between) return mixed(samples_[at_].value, samples_[at_ + 1].value, fraction_);
+  if (relation_ == Relation::between) return mixed(samples_[at_].value, samples_[at_ + 1].value, fraction_);
   RigidSample value = samples_[at_].value;
-  if (place_ != Place::on) value.velocity = value.angular_velocity = {};
+  if (relation_ != Relation::on) value.velocity = value.angular_velocity = {};
   return value;
 }
 
 template <class Time>
 Pose SampleTrack<Time>::pose() noexcept {
   Pose pose = value().pose;
-  if (place_ != Place::between || !is_sparse(at_)) return pose;
+  if (relation_ != Relation::between || !is_sparse(at_)) return pose;
   const SampleCurve& motion = curve();
   pose.position = pose.position + motion.linear.off(motion.span, fraction_);
   if (motion.angular.bend != Vec3{}) pose.rotation = rotation_of(motion.angular.off(motion.span, fraction_)) * pose.rotation;

@@ -136,14 +136,14 @@ Result<void> TactusAssembler::read_rest(mcap::Reader& mcap) {
 }
 
 /// None: the channels say that neither is known.
-std::optional<KnownForces> known_forces(const std::map<std::string_view, const mcap::Channel*>& by_topic,
+std::optional<RecordedForces> recorded_forces(const std::map<std::string_view, const mcap::Channel*>& by_topic,
                                         const std::string& user) {
   const auto is_known = [&](const char* force) {
     const auto found = by_topic.find("/users/" + user + force);
     return found == by_topic.end() || entry(found->second->metadata, "known") != "no";
   };
-  if (is_known("/server_force")) return is_known("/force") ? KnownForces::both : KnownForces::server;
-  return is_known("/force") ? std::optional(KnownForces::rendered) : std::nullopt;
+  if (is_known("/server_force")) return is_known("/force") ? RecordedForces::both : RecordedForces::server;
+  return is_known("/force") ? std::optional(RecordedForces::rendered) : std::nullopt;
 }
 
 /// Channels are found by topic: ids may change when other tools rewrite a file.
@@ -169,7 +169,7 @@ Result<void> TactusAssembler::find_channels(const mcap::Reader& mcap, Errc missi
     const auto has = [&](const char* channel) { return by_topic.contains("/users/" + user.name + channel); };
     user.senses = {has("/device_orientation"), has("/device_velocity"), has("/device_buttons"), has("/device_time")};
     user.has_servo = has("/servo");
-    const auto forces = known_forces(by_topic, user.name);
+    const auto forces = recorded_forces(by_topic, user.name);
     if (!forces) return refuse(mcap, Errc::invalid, "R-TRC-12");
     user.forces = *forces;
     if (!has("/device_reports")) continue;
@@ -326,11 +326,11 @@ Result<std::uint64_t> TactusAssembler::store_shown(std::span<const std::uint8_t>
   return reference.time;
 }
 
-/// Put a user's value into its place; the result is the time of its header.
+/// Put a user's value into its member; the result is the time of its header.
 template <class T>
-Result<std::uint64_t> keep(const Result<Stamped<T>>& message, T& place) noexcept {
+Result<std::uint64_t> keep(const Result<Stamped<T>>& message, T& member) noexcept {
   if (!message) return tl::unexpected(message.error());
-  place = message->value;
+  member = message->value;
   return message->time;
 }
 

@@ -28,7 +28,7 @@
 ///   record "tactus_capture" of a capture: who, what and when (trace_capture.h)
 ///   pose channels           dof
 ///   reports channels        report_descriptor (hexadecimal)
-///   force and server_force  known ("no": it is not, see KnownForces; left out if known)
+///   force and server_force  known ("no": it is not, see RecordedForces; left out if known)
 ///   rest channels           fixed (vertex numbers, ascending, blanks between; left out if none), period (ticks; left out if 1)
 /// The scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or TraceWriterOptions::chunk_time.
 ///

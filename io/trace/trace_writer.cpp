@@ -105,8 +105,8 @@ mcap::TextMap metadata_of(const TraceDeformable& mesh) {
 }
 
 bool is_unknown(const TraceChannel& channel, const TraceInfo& info) {
-  if (channel.role == Role::force) return info.users[channel.index].forces == KnownForces::server;
-  return channel.role == Role::server_force && info.users[channel.index].forces == KnownForces::rendered;
+  if (channel.role == Role::force) return info.users[channel.index].forces == RecordedForces::server;
+  return channel.role == Role::server_force && info.users[channel.index].forces == RecordedForces::rendered;
 }
 
 /// How ROS 2 is to offer a channel, as rosbag2 writes it: profile "ros2" wants it of every channel. What is sent once must still reach

@@ -83,10 +83,10 @@ def parts(tables, what):
 
 def after_text(tables, name, text):
     """The number that stands behind a text which is there once."""
-    places = tables.text(name).split(text)
-    found = NUMBER.match(places[1]) if len(places) == 2 else None
+    parts = tables.text(name).split(text)
+    found = NUMBER.match(parts[1]) if len(parts) == 2 else None
     if not found:
-        raise Refusal(f"{name}: the text '{text}' stands there {len(places) - 1} times, or no number follows it")
+        raise Refusal(f"{name}: the text '{text}' stands there {len(parts) - 1} times, or no number follows it")
     return float(found[0].replace("'", ""))
 
 

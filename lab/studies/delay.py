@@ -199,7 +199,7 @@ def markdown(rows, options, scenes, drawn):
            "that the device "
            "has put in. The same motion, that of the hands without delay: RMS of the *force error* over RMS of the force; how "
            "far *away* "
-           "from its place without delay the touched point is *seen* (RMS, 95th percentile); how far *apart* two users see the "
+           "from its position without delay the touched point is *seen* (RMS, 95th percentile); how far *apart* two users see the "
            "object (95th "
            "percentile). The same rows, seed by seed, are in `delay.csv`.\n")
     if drawn:

@@ -83,11 +83,11 @@ def omissions(time):
     """What is not in the tables, or only in part, and why."""
     out, points = [], time["points"]
     for i, point in enumerate(points):
-        place = f"{point['method']}, h = {milliseconds(point['step_s'])} ms: "
+        label = f"{point['method']}, h = {milliseconds(point['step_s'])} ms: "
         if point["remark"]:
-            out.append(place + point["remark"])
+            out.append(label + point["remark"])
         elif not is_usable(point["displacement_error"]):
-            out.append(place + "finished, but no better than standing still")
+            out.append(label + "finished, but no better than standing still")
         is_last = i + 1 == len(points) or points[i + 1]["method"] != point["method"]
         if is_last and point["steps_per_sample"] != time["plan"]["steps_per_sample"][-1]:
             out.append(f"{point['method']}, h below {milliseconds(point['step_s'])} ms: left out, "

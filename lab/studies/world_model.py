@@ -81,8 +81,8 @@ class World:
         self.setting, self.costs = setting, costs
         self.random = numpy.random.default_rng(setting.seed)
         self.spots = self.random.uniform(0, setting.side, (setting.hot_spots, 2))
-        self.objects = self._places(setting.objects, 0.5)
-        self.users = self._places(setting.users, 0.8)
+        self.objects = self._sites(setting.objects, 0.5)
+        self.users = self._sites(setting.users, 0.8)
         self.goals, self.waits = self.users.copy(), self.random.exponential(5, setting.users)
         self.spot_of = numpy.argmin(numpy.hypot(*(self.users[:, None] - self.spots[None]).transpose(2, 0, 1)), axis=1)
         self.carried = numpy.full(setting.users, -1)
@@ -95,7 +95,7 @@ class World:
         self.regions = Regions(setting, self.users, numpy.ones(setting.users))
         self.owner, self.server = self.regions.of(self.objects), self.regions.of(self.users)
 
-    def _places(self, count, fraction):
+    def _sites(self, count, fraction):
         """Of `fraction` of them around hot spots, else anywhere."""
         side = self.setting.side
         out = self.random.uniform(0, side, (count, 2))
@@ -228,7 +228,7 @@ class World:
         looks = costs["look_us"] * (own + ghosts)  # of one client
         truth = costs["truth_us"] + costs["truth_of_1000_us"] * self.setting.objects / 1000
         packets = packets * (costs["packet_us"] + costs["packet_of_1000_us"] * self.setting.objects / 1000)
-        self.places = numpy.concatenate([self.objects[moving], self.users])
+        self.sites = numpy.concatenate([self.objects[moving], self.users])
         self.weights = numpy.concatenate([numpy.full(len(moving), costs["physics_us"] + truth),
                                           costs["session_us"] + looks[self.server] + costs["tell_us"] * sent + packets])
         return numpy.stack([costs["physics_us"] * own, truth * (own + ghosts), costs["session_us"] * clients, looks * clients,
@@ -248,7 +248,7 @@ class World:
     def split(self):
         """Regions anew.   out  how many objects, users have another server"""
         owner, server = self.owner, self.server
-        self.regions = Regions(self.setting, self.places, self.weights)
+        self.regions = Regions(self.setting, self.sites, self.weights)
         self.owner, self.server = self.regions.of(self.objects), self.regions.of(self.users)
         return int((self.owner != owner).sum()), int((self.server != server).sum())
 

@@ -44,7 +44,7 @@ std::vector<double> seen_away(const std::vector<DelayTick>& delayed, const std::
 std::vector<double> seen_apart(const Scene& scene, const DelayRun& run) {
   std::vector<double> out;
   if (scene.users.size() < 2 || scene.users[0].object != scene.users[1].object) return out;
-  if (scene.users[0].object >= scene.objects.size() + scene.msds.size()) return out;  // its shape is seen, not its place
+  if (scene.users[0].object >= scene.objects.size() + scene.msds.size()) return out;  // its shape is seen, not its position
   for (std::size_t i = 0; i < run.users[0].size(); ++i)
     out.push_back(norm(run.users[0][i].shown.position - run.users[1][i].shown.position));
   return out;

@@ -39,12 +39,12 @@ FemCase slab(std::string name, Extent extent, const Material& material) {
   return out;
 }
 
-/// Put every vertex where `place` wants it; the model keeps the fixed ones.
-template <class Place>
-void move(FemCase& fem_case, Place&& place) {
+/// Put every vertex where `position` wants it; the model keeps the fixed ones.
+template <class Position>
+void move(FemCase& fem_case, Position&& position) {
   for (std::size_t i = 0; i < fem_case.mesh.vertices.size(); ++i) {
     const Vec3& rest = fem_case.mesh.vertices[i];
-    const Vec3 moved = place(rest) - rest;
+    const Vec3 moved = position(rest) - rest;
     fem_case.start.u.segment<3>(static_cast<Eigen::Index>(3 * i)) << moved.x, moved.y, moved.z;
   }
 }
@@ -115,9 +115,9 @@ void add_materials(std::vector<FemCase>& out, Extent extent) {
 }
 
 void add_starts(std::vector<FemCase>& out, Extent extent) {
-  const auto add = [&](const char* name, auto place) {
+  const auto add = [&](const char* name, auto position) {
     FemCase one = slab(name, extent, kSoft);
-    move(one, place);
+    move(one, position);
     out.push_back(std::move(one));
   };
   const Cells n = cells(extent);
@@ -204,8 +204,8 @@ std::size_t inverted(const TetMesh& mesh, const Eigen::VectorXd& u) {
 }
 
 std::string remark_of(const Diagnostic& error) {
-  const std::string place = place_of(error);
-  return std::string(error.error.rule) + (place.empty() ? "" : ", ") + place + ": " +
+  const std::string location = location_of(error);
+  return std::string(error.error.rule) + (location.empty() ? "" : ", ") + location + ": " +
          (error.remedy.empty() ? remedy(error.error) : error.remedy);
 }
 

@@ -21,7 +21,7 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 Edge edge_between(std::uint32_t a, std::uint32_t b) { return std::minmax(a, b); }
 
-/// Every edge once; the node in its middle is number (vertices + its place here).
+/// Every edge once; the node in its middle is number (vertices + its index here).
 std::vector<Edge> edges_of(const TetMesh& mesh) {
   std::vector<Edge> edges;
   edges.reserve(6 * mesh.tets.size());
@@ -50,8 +50,8 @@ class Mesh {
   int free_nodes() const { return free_; }
   int number(std::uint32_t node) const { return number_[node]; }  ///< among the free ones, -1: fixed
   std::uint32_t middle(std::uint32_t a, std::uint32_t b) const {
-    const auto place = std::lower_bound(edges_.begin(), edges_.end(), edge_between(a, b));
-    return static_cast<std::uint32_t>(vertices() + static_cast<std::size_t>(place - edges_.begin()));
+    const auto found = std::lower_bound(edges_.begin(), edges_.end(), edge_between(a, b));
+    return static_cast<std::uint32_t>(vertices() + static_cast<std::size_t>(found - edges_.begin()));
   }
   Element element(const Tet& tet) const {
     Element out{tet[0], tet[1], tet[2], tet[3]};

@@ -66,7 +66,7 @@ class DeviceCoder {
                     .sender = std::move(sender),
                     .receiver = std::move(receiver),
                     .truth = {info.tick_rate, info.users[user].senses.velocity},
-                    .answer = static_cast<std::int64_t>(SignalStudy::kRoundTrip * info.tick_rate)};
+                    .ack_timeout = static_cast<std::int64_t>(SignalStudy::kRoundTrip * info.tick_rate)};
     out.tally.result = {.user = user, .signal = signal, .name = std::move(name)};
     return out;
   }
@@ -79,7 +79,7 @@ class DeviceCoder {
     if (!sender.held().empty()) return tl::unexpected(Error{Errc::invalid_argument, sender.held().front().rule});
     for (const Packet& packet : packets) {
       TACTUS_CHECK(receiver.push(packet.bytes, tick));
-      acknowledgements.push_back({tick + answer, packet.sequence});
+      acknowledgements.push_back({tick + ack_timeout, packet.sequence});
       ++tally.result.packets;
       tally.result.bytes += packet.bytes.size();
     }
@@ -105,7 +105,7 @@ class DeviceCoder {
   Sender sender;
   Receiver receiver;
   DeviceTruth truth;
-  std::int64_t answer = 0;  // [ticks]
+  std::int64_t ack_timeout = 0;  // [ticks]
   std::deque<Acknowledgement> acknowledgements{};
   Tally tally{};
 };

@@ -82,7 +82,7 @@ Outcome interact(const Setting& setting) {
       out.verdict = Verdict::diverges;
       break;
     }
-    const double done = minimum_jerk(std::min(1.0, time / kOnset)).place;
+    const double done = minimum_jerk(std::min(1.0, time / kOnset)).position;
     hand.step(rendered + done * kPress + setting.hand.stiffness * (kStart + done * (rest - kStart)));
     const double speed = std::abs(hand.velocity());
     if (time > 1 && time < 2) early = std::max(early, speed);

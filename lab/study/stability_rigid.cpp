@@ -40,9 +40,9 @@ Scene tower() {
   Scene scene = table();
   for (int layer = 0; layer < 18; ++layer) {
     const double height = (layer + 0.5) * kHeight;
-    for (int place = -1; place <= 1; ++place) {
-      if (layer % 2 == 0) add(scene, {75e-3, 25e-3, kHeight}, kMass, {0, place * kPitch, height});
-      else add(scene, {25e-3, 75e-3, kHeight}, kMass, {place * kPitch, 0, height});
+    for (int column = -1; column <= 1; ++column) {
+      if (layer % 2 == 0) add(scene, {75e-3, 25e-3, kHeight}, kMass, {0, column * kPitch, height});
+      else add(scene, {25e-3, 75e-3, kHeight}, kMass, {column * kPitch, 0, height});
     }
   }
   return scene;
@@ -62,7 +62,7 @@ double farthest(const RigidWorld& world, std::span<const Vec3> from) {
   return out;
 }
 
-std::vector<Vec3> places(const RigidWorld& world, std::size_t objects) {
+std::vector<Vec3> positions(const RigidWorld& world, std::size_t objects) {
   std::vector<Vec3> out;
   for (std::uint32_t i = 0; i < objects; ++i) out.push_back(world.sample(i).pose.position);
   return out;
@@ -95,7 +95,7 @@ Row tower_row(double seconds, Sleep sleep, const Progress& progress) {
       return row;
     }
     if (!asleep && stands_still(world, scene.objects.size())) asleep = static_cast<double>(world.tick()) * kTick;
-    if (world.tick() == 1000) settled = places(world, scene.objects.size());
+    if (world.tick() == 1000) settled = positions(world, scene.objects.size());
   }
   row.measured = 1e3 * farthest(world, settled);
   row.verdict = *row.measured < 1 ? Verdict::stable : Verdict::diverges;

@@ -144,8 +144,8 @@ class _Reader:
         shown, more = self.findings[:MOST_FINDINGS], len(self.findings) - MOST_FINDINGS
         if more > 0:
             shown.append((f"{self.path}: {more} more", "Correct these first."))
-        place = {"place": f"line {self.first_line}"} if self.first_line else {}
-        raise Refusal(*shown[0], findings=shown, file=str(self.path), **place)
+        location = {"location": f"line {self.first_line}"} if self.first_line else {}
+        raise Refusal(*shown[0], findings=shown, file=str(self.path), **location)
 
     def line_of(self, key):
         """The first line that begins with the last name of a key, behind the header of its table."""
@@ -166,12 +166,12 @@ class _Reader:
 
     def text_of(self, table, path, key, otherwise=None):
         value = table.get(key, otherwise)
-        place = f"{path}.{key}" if path else key
+        location = f"{path}.{key}" if path else key
         if value is None:
-            self.invalid(place, "is missing", f'add {key} = "..."')
+            self.invalid(location, "is missing", f'add {key} = "..."')
             return ""
         if not isinstance(value, str):
-            self.invalid(place, "is no text", f'write a string: "{value}"')
+            self.invalid(location, "is no text", f'write a string: "{value}"')
             return ""
         return value
 
@@ -181,12 +181,12 @@ class _Reader:
             self.invalid(f"{path}.{key}" if path else key, f"{value!r} is no name", SIMPLE_REMEDY)
         return value
 
-    def strings(self, value, place):
+    def strings(self, value, location):
         if not isinstance(value, list) or not value or len(value) > MOST_POINTS:
-            self.invalid(place, "is missing" if value is None else "is no array of texts", "write an array of strings, at least one")
+            self.invalid(location, "is missing" if value is None else "is no array of texts", "write an array of strings, at least one")
             return []
         if not all(isinstance(one, str) for one in value):
-            self.invalid(place, "holds what is no text", 'write strings, as on a command line: "2.5%"')
+            self.invalid(location, "holds what is no text", 'write strings, as on a command line: "2.5%"')
             return []
         return value
 
@@ -231,7 +231,7 @@ class _Reader:
         for i, table in enumerate(self.tables_of(root, "plot")):
             plan.plots.append(self.plot(table, f"plot[{i}]", plan))
         if not self.findings:  # what follows compares everything with everything
-            self.check_places("command", plan.command, self.lengths_of(plan))
+            self.check_placeholders("command", plan.command, self.lengths_of(plan))
             self.check_uses(plan)
             self.check_files(plan)
         return plan
@@ -258,36 +258,36 @@ class _Reader:
         if plan.axes and plan.count() > MOST_POINTS:
             self.invalid("vary", f"makes {plan.count()} combinations", f"stay at or below {MOST_POINTS}")
 
-    def parameter(self, place, name, spec, plan):
+    def parameter(self, location, name, spec, plan):
         if not SIMPLE.match(name):
-            self.invalid(place, "is no name", SIMPLE_REMEDY)
+            self.invalid(location, "is no name", SIMPLE_REMEDY)
         if name in plan.values:
-            self.invalid(place, "varies twice", "give every parameter a name of its own")
-        plan.values[name] = self.range_of(spec, place) if isinstance(spec, dict) else self.strings(spec, place)
+            self.invalid(location, "varies twice", "give every parameter a name of its own")
+        plan.values[name] = self.range_of(spec, location) if isinstance(spec, dict) else self.strings(spec, location)
         return plan.values[name]
 
-    def end_of_range(self, table, place, key):
-        text = self.text_of(table, place, key)
+    def end_of_range(self, table, location, key):
+        text = self.text_of(table, location, key)
         found = LEADING.match(text)
         if not found or not math.isfinite(float(found[0])):
-            self.invalid(f"{place}.{key}", f"{text!r} begins with no number", 'write a number and its unit: "0.1mm"')
+            self.invalid(f"{location}.{key}", f"{text!r} begins with no number", 'write a number and its unit: "0.1mm"')
             return 1.0, ""
         return float(found[0]), text[found.end():]
 
-    def range_of(self, table, place):
+    def range_of(self, table, location):
         """`count` values from one number to another, by equal steps or equal ratios."""
-        self.allow(table, place, ["from", "to", "count", "scale"])
-        (low, unit), (high, unit_of_high) = self.end_of_range(table, place, "from"), self.end_of_range(table, place, "to")
+        self.allow(table, location, ["from", "to", "count", "scale"])
+        (low, unit), (high, unit_of_high) = self.end_of_range(table, location, "from"), self.end_of_range(table, location, "to")
         count, scale = table.get("count"), table.get("scale", "linear")
         if not isinstance(count, int) or isinstance(count, bool) or not 2 <= count <= MOST_IN_RANGE:
-            self.invalid(f"{place}.count", f"is {count}", f"give a whole number from 2 to {MOST_IN_RANGE}")
+            self.invalid(f"{location}.count", f"is {count}", f"give a whole number from 2 to {MOST_IN_RANGE}")
             count = 2
         if scale not in ("linear", "log"):
-            self.invalid(f"{place}.scale", f"is {scale!r}", 'write "linear" or "log"')
+            self.invalid(f"{location}.scale", f"is {scale!r}", 'write "linear" or "log"')
         if unit != unit_of_high:
-            self.invalid(place, f"goes from {unit or 'no unit'} to {unit_of_high or 'no unit'}", "give both ends of a range in one unit")
+            self.invalid(location, f"goes from {unit or 'no unit'} to {unit_of_high or 'no unit'}", "give both ends of a range in one unit")
         if scale == "log" and not (low > 0 and high > 0):
-            self.invalid(place, "is logarithmic and has an end that is not above 0", "give a logarithmic range ends above 0")
+            self.invalid(location, "is logarithmic and has an end that is not above 0", "give a logarithmic range ends above 0")
             return ["1", "2"]
         parts = [i / (count - 1.0) for i in range(count)]
         return [f"{low * math.pow(high / low, part) if scale == 'log' else low + (high - low) * part:.6g}{unit}" for part in parts]
@@ -295,9 +295,9 @@ class _Reader:
     def pointers(self, table, path):
         self.check_size(path, table)
         out = {column: self.text_of(table, path, column) for column in table}
-        for column, place in out.items():
-            if place and not POINTER.match(place):
-                self.invalid(f"{path}.{column}", f"{place!r} is no JSON pointer", "write one, such as /traffic/payload/bit_per_s")
+        for column, pointer in out.items():
+            if pointer and not POINTER.match(pointer):
+                self.invalid(f"{path}.{column}", f"{pointer!r} is no JSON pointer", "write one, such as /traffic/payload/bit_per_s")
         return out
 
     def read_formulas(self, table, plan):
@@ -320,73 +320,73 @@ class _Reader:
 
     def read_inputs(self, tables, plan):
         for i, table in enumerate(tables):
-            place = f"input[{i}]"
-            self.allow(table, place, ["name", "file", "command"])
-            made = Input(self.name_of(table, place, "name"), self.text_of(table, place, "file"), [])
+            location = f"input[{i}]"
+            self.allow(table, location, ["name", "file", "command"])
+            made = Input(self.name_of(table, location, "name"), self.text_of(table, location, "file"), [])
             if "command" in table:
-                made.command = self.strings(table["command"], f"{place}.command")
+                made.command = self.strings(table["command"], f"{location}.command")
             if made.name in plan.inputs:
-                self.invalid(f"{place}.name", f"{made.name} is the name of another input", "give every input a name of its own")
+                self.invalid(f"{location}.name", f"{made.name} is the name of another input", "give every input a name of its own")
             plan.inputs[made.name] = made
         lengths = self.lengths_of(plan)
         for i, made in enumerate(plan.inputs.values()):
-            self.check_places(f"input[{i}].file", [made.file], lengths)
-            self.check_places(f"input[{i}].command", made.command, lengths | {"file": LONGEST_PATH})
+            self.check_placeholders(f"input[{i}].file", [made.file], lengths)
+            self.check_placeholders(f"input[{i}].command", made.command, lengths | {"file": LONGEST_PATH})
             for name in plan.values:
                 if any(f"{{{name}}}" in word for word in made.command) and f"{{{name}}}" not in made.file:
                     self.invalid(f"input[{i}].file", f"does not name {{{name}}}, which its command depends on",
                                  f"write {{{name}}} into the name of the file, too")
 
-    def column(self, table, place, key, plan, value=None):
-        value = self.text_of(table, place, key) if value is None else value
+    def column(self, table, location, key, plan, value=None):
+        value = self.text_of(table, location, key) if value is None else value
         if value and value not in plan.columns():
-            self.invalid(f"{place}.{key}", f"{value} is no column", "name a parameter, a measure, a time or a formula of this plan")
+            self.invalid(f"{location}.{key}", f"{value} is no column", "name a parameter, a measure, a time or a formula of this plan")
         if value and value == plan.repeat:
-            self.invalid(f"{place}.{key}", f"{value} only repeats", "name another parameter: figures show the spread over this one")
+            self.invalid(f"{location}.{key}", f"{value} only repeats", "name another parameter: figures show the spread over this one")
         return value
 
-    def texts(self, table, place, key, otherwise):
+    def texts(self, table, location, key, otherwise):
         value = table.get(key, otherwise)
-        return self.strings(value, f"{place}.{key}") if isinstance(value, list) else [self.text_of(table, place, key)]
+        return self.strings(value, f"{location}.{key}") if isinstance(value, list) else [self.text_of(table, location, key)]
 
-    def plot(self, table, place, plan):
-        self.allow(table, place, ["name", "title", "x", "y", "series", "x_label", "y_label", "series_label", "names", "log", "where"])
-        name, x = self.name_of(table, place, "name"), self.column(table, place, "x", plan)
-        y = [self.column(table, place, "y", plan, one) for one in self.texts(table, place, "y", None)]
-        series = self.column(table, place, "series", plan) if "series" in table else ""
-        labels = self.texts(table, place, "y_label", y)
+    def plot(self, table, location, plan):
+        self.allow(table, location, ["name", "title", "x", "y", "series", "x_label", "y_label", "series_label", "names", "log", "where"])
+        name, x = self.name_of(table, location, "name"), self.column(table, location, "x", plan)
+        y = [self.column(table, location, "y", plan, one) for one in self.texts(table, location, "y", None)]
+        series = self.column(table, location, "series", plan) if "series" in table else ""
+        labels = self.texts(table, location, "y_label", y)
         if len(labels) != len(y):
-            self.invalid(f"{place}.y_label", f"has {len(labels)} texts for {len(y)} panels", "give one for each y")
-        log = self.text_of(table, place, "log", "none")
+            self.invalid(f"{location}.y_label", f"has {len(labels)} texts for {len(y)} panels", "give one for each y")
+        log = self.text_of(table, location, "log", "none")
         if log not in ("none", "x", "y", "xy"):
-            self.invalid(f"{place}.log", f"is {log!r}", 'write "x", "y" or "xy"')
+            self.invalid(f"{location}.log", f"is {log!r}", 'write "x", "y" or "xy"')
         where, names = self.table_of(table, "where"), self.table_of(table, "names")
         for column, value in where.items():
-            self.column(table, place, "where", plan, column)
+            self.column(table, location, "where", plan, column)
             if column in plan.values and value not in plan.values[column]:
-                self.invalid(f"{place}.where.{column}", f"{value!r} is no value of it", "give one of the values of this parameter")
+                self.invalid(f"{location}.where.{column}", f"{value!r} is no value of it", "give one of the values of this parameter")
         if not all(isinstance(text, str) for text in names.values()):
-            self.invalid(f"{place}.names", "holds what is no text", "write strings")
-        return Plot(name, self.text_of(table, place, "title", name), x, y, series, self.text_of(table, place, "x_label", x), labels,
-                    self.text_of(table, place, "series_label", series), log, where, names)
+            self.invalid(f"{location}.names", "holds what is no text", "write strings")
+        return Plot(name, self.text_of(table, location, "title", name), x, y, series, self.text_of(table, location, "x_label", x), labels,
+                    self.text_of(table, location, "series_label", series), log, where, names)
 
     def lengths_of(self, plan):
         """[bytes] of what stands for each {name} at most."""
         return {name: max((LONGEST_PATH if value in plan.inputs else len(value.encode()) for value in values), default=0)
                 for name, values in plan.values.items()}
 
-    def check_places(self, place, words, lengths):
+    def check_placeholders(self, location, words, lengths):
         """Each {name} in a command stands for something, and no word grows too long."""
         for word in words:
             length = len(word.encode())
             for found in re.finditer(r"\{([^}]*)(\}?)", word):
                 if not found[2]:
-                    self.invalid(place, f"{{{found[1]} is not closed", f"close {{{found[1]} with a }}")
+                    self.invalid(location, f"{{{found[1]} is not closed", f"close {{{found[1]} with a }}")
                 elif found[1] not in lengths:
-                    self.invalid(place, f"nothing here has the name {{{found[1]}}}", "use a parameter, or leave it out")
+                    self.invalid(location, f"nothing here has the name {{{found[1]}}}", "use a parameter, or leave it out")
                 length += lengths.get(found[1], 0)
             if length > LONGEST_WORD:
-                self.invalid(place, "has a word that is too long",
+                self.invalid(location, "has a word that is too long",
                              f"shorten it: with its values it may have at most {LONGEST_WORD} bytes, files counted as {LONGEST_PATH}")
 
     def check_uses(self, plan):

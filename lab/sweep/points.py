@@ -127,9 +127,9 @@ def text_of(path):
         return None
 
 
-def pointed(report, place):
+def pointed(report, pointer):
     """The text of the value at a JSON pointer; None where there is none, or more than a value."""
-    for token in place.split("/")[1:]:
+    for token in pointer.split("/")[1:]:
         token = token.replace("~1", "/").replace("~0", "~")
         if isinstance(report, list) and token.isdecimal() and int(token) < len(report):
             report = report[int(token)]
@@ -188,14 +188,14 @@ class Points:
 
     def measured(self, words, report):
         """{JSON pointer: text} of all that the plan measures."""
-        values = {place: pointed(report, place) for place in [*self.plan.measures.values(), *self.plan.times.values()]}
-        for place, value in values.items():
+        values = {pointer: pointed(report, pointer) for pointer in [*self.plan.measures.values(), *self.plan.times.values()]}
+        for pointer, value in values.items():
             if value is None:
-                raise Refusal(f"{program.as_typed(words)}\n       its report has no value at {place}",
+                raise Refusal(f"{program.as_typed(words)}\n       its report has no value at {pointer}",
                               "Look at what the command prints with --json.")
         return values
 
     def row_of(self, point, kept):
         """{column: text} of a point, without derived columns."""
-        columns = {column: str(kept["values"][place]) for column, place in [*self.plan.measures.items(), *self.plan.times.items()]}
+        columns = {column: str(kept["values"][pointer]) for column, pointer in [*self.plan.measures.items(), *self.plan.times.items()]}
         return point | columns | {HOST: str(kept["host"]), SECONDS: f"{kept['seconds']:.3f}"}

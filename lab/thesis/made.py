@@ -64,7 +64,7 @@ def six(value):
 
 
 def about_faster_hand(options):
-    return [f"The faster hand takes {options.pace:g} of the time for each movement and has a tremor of {1e3 * options.tremor:g} mm. "
+    return [f"The faster hand takes {options.duration_scale:g} of the time for each movement and has a tremor of {1e3 * options.tremor:g} mm. "
             "The usual 0.5 and 0.4 mm are a fit to three",
             "rates of figure 3.14, no evidence of how the thesis's people moved."]
 

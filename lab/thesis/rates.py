@@ -87,10 +87,10 @@ def adjusted(options):
     requests = []
     for scene, interpolation, p, _ in ADJUSTED:
         slow = states(options, scene, p, interpolation, 1)
-        requests += [slow, slow | {"pace": options.pace, "tremor_m": options.tremor}]
+        requests += [slow, slow | {"duration_scale": options.duration_scale, "tremor_m": options.tremor}]
     found = over_seeds(options, requests)
     rows = [(setting, found[2 * i], found[2 * i + 1]) for i, setting in enumerate(ADJUSTED)]
-    report = head(options, "fig3.10") | {"faster_hand": {"pace": options.pace, "tremor_m": options.tremor}, "rows": [
+    report = head(options, "fig3.10") | {"faster_hand": {"duration_scale": options.duration_scale, "tremor_m": options.tremor}, "rows": [
         {"scene": scene, "interpolation": with_or_without(interpolation), "deadband": p, "thesis_packets_per_s": thesis,
          "states": summary(slow), "states_faster_hand": summary(fast)} for (scene, interpolation, p, thesis), slow, fast in rows]}
     cells = [[scene, with_or_without(interpolation), f"{100 * p:.1f} %"] + [plus_minus(of["packets_per_s_in_contact"]) for of in (slow, fast)]
@@ -226,7 +226,7 @@ def order_of(rows, names):
 def settings(options):
     """Table 3.3 and figure 3.14: traffic control settings, by a slow and a fast hand."""
     scene = "rotate-push-lift"
-    hands = {"scene_hand": [], "faster_hand": ["--pace", repr(options.pace), "--tremor", f"{options.tremor!r}m"]}
+    hands = {"scene_hand": [], "faster_hand": ["--duration-scale", repr(options.duration_scale), "--tremor", f"{options.tremor!r}m"]}
     jobs = [(name, hand, seed) for hand in hands for name in SETTINGS for seed in range(1, options.seeds + 1)]
     bar = program.Progress("reproduce", len(jobs), not options.quiet and not options.no_progress)
     runs = dict(zip(jobs, program.side_by_side(lambda job: measure(options, scene, SETTINGS[job[0]], hands[job[1]], job[2]), jobs,
@@ -235,7 +235,7 @@ def settings(options):
                    for name, of in SETTINGS.items()} for hand in hands}
     report = {"schema": "tactus.reproduce/3", "figure": "fig3.14", "scene": scene, "seconds": runs[jobs[0]]["seconds"], "seeds": options.seeds,
               "length_unit_m": options.length_unit, "grip": options.grip,
-              "faster_hand": {"pace": options.pace, "tremor_m": options.tremor}, "settings": []}
+              "faster_hand": {"duration_scale": options.duration_scale, "tremor_m": options.tremor}, "settings": []}
     for name, of in SETTINGS.items():
         row = {"setting": name} | {hand: rows[hand][name] for hand in hands}
         if of["thesis"]:

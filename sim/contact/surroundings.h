@@ -61,7 +61,7 @@ class TriangleCache {
   }
 
   /// As AabbTree::sweep, with contacts up to a fraction `limit` of the path.
-  /// time O(log n) at a new place; then 5 ns per triangle around and 0.1 us per one close by; no allocation
+  /// time O(log n) at a new position; then 5 ns per triangle around and 0.1 us per one close by; no allocation
   std::optional<SurfaceHit> sweep(const Sweep& sphere, std::span<const std::uint32_t> left_out, double limit = 1) noexcept;
   /// The same with one triangle of the tree.
   std::optional<SurfaceHit> sweep_one(const Sweep& sphere, std::uint32_t triangle) noexcept;

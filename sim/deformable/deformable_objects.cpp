@@ -123,7 +123,7 @@ tl::expected<void, Diagnostic> Objects::step() {
                                        .step = tick_,
                                        .kind = "deformable object",
                                        .element = i,
-                                       .detail = place_of(moved.error()),
+                                       .detail = location_of(moved.error()),
                                        .remedy = moved.error().remedy});
     last_[i] = *moved;
     if (*moved == DeformableBody::Tick::stepped) deform(i);

@@ -35,8 +35,8 @@ struct StiffnessMap {
 ///      this build has no finite elements
 Result<StiffnessMap> stiffness_map(const SceneDeformable& object);
 
-/// Largest stable sum of couplings [N/m] that press this object at one place: eq. 4.38 with the object's deformation period,
-/// k_o = |f| / |u . n| at that place, the effective mass of that triangle, 1 / sum of w^2 / m, and the damping of both. Eq. 4.38
+/// Largest stable sum of couplings [N/m] that press this object at one point: eq. 4.38 with the object's deformation period,
+/// k_o = |f| / |u . n| at that point, the effective mass of that triangle, 1 / sum of w^2 / m, and the damping of both. Eq. 4.38
 /// assumes that all else rests; here neighbours yield too, so that several times as much may be stable.
 /// time one construction of the model and one solve by conjugate gradients: 25 ms for 2000 tetrahedra
 /// err  R-FEM-1..4, R-TET-n: the object is invalid; unsupported R-SIM-2: this build has no finite elements

@@ -29,7 +29,7 @@ void LdlCholesky::analyse(const SparseMatrix& A) {
   column_begin_.assign(n + 1, 0);
   // A is symmetric: its rows are the columns that LDL asks for.
   ldl_symbolic(size_of(row_), indices(A.outerIndexPtr()), indices(A.innerIndexPtr()), column_begin_.data(), parent_.data(),
-               count_.data(), seen_.data(), row_.data(), place_.data());
+               count_.data(), seen_.data(), row_.data(), inverse_.data());
   row_of_entry_.resize(static_cast<std::size_t>(column_begin_[n]));
   L_.resize(row_of_entry_.size());
   D_.resize(n);
@@ -49,14 +49,14 @@ void LdlCholesky::order(const SparseMatrix& A) {
   row_.clear();
   for (int k = 0; k < vertices; ++k)
     for (int axis = 0; axis < 3; ++axis) row_.push_back(3 * found.indices()[k] + axis);
-  place_.resize(row_.size());
+  inverse_.resize(row_.size());
 }
 
 bool LdlCholesky::factor(const SparseMatrix& A) noexcept {
   const int n = size_of(row_);
   const int done = ldl_numeric(n, indices(A.outerIndexPtr()), indices(A.innerIndexPtr()), const_cast<double*>(A.valuePtr()),
                                column_begin_.data(), parent_.data(), count_.data(), row_of_entry_.data(), L_.data(), D_.data(),
-                               y_.data(), pattern_.data(), seen_.data(), row_.data(), place_.data());
+                               y_.data(), pattern_.data(), seen_.data(), row_.data(), inverse_.data());
   return done == n && std::all_of(D_.begin(), D_.end(), [](double pivot) { return pivot > 0 && std::isfinite(pivot); });
 }
 

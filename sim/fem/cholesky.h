@@ -34,7 +34,7 @@ class LdlCholesky {
  private:
   void order(const SparseMatrix& A);
 
-  std::vector<int> row_, place_;  // row_[k]: row of A that is row k of P A P^T; its inverse
+  std::vector<int> row_, inverse_;  // row_[k]: row of A that is row k of P A P^T; its inverse
   std::vector<int> parent_, column_begin_, row_of_entry_;
   std::vector<double> L_, D_;
   std::vector<int> count_, seen_, pattern_;  // scratch

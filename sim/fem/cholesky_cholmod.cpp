@@ -64,14 +64,14 @@ void CholmodCholesky::analyse(const SparseMatrix& A) {
   Impl& s = *impl_;
   // Each value is its own index, so that one permutation of the matrix shows where each value goes. CHOLMOD only reads.
   const auto count = static_cast<std::size_t>(A.nonZeros());
-  std::vector<double> place(count);
-  for (std::size_t i = 0; i < count; ++i) place[i] = static_cast<double>(i);
+  std::vector<double> index(count);
+  for (std::size_t i = 0; i < count; ++i) index[i] = static_cast<double>(i);
   cholmod_sparse lower{};
   lower.nrow = lower.ncol = static_cast<std::size_t>(A.rows());
   lower.nzmax = count;
   lower.p = const_cast<int*>(A.outerIndexPtr());
   lower.i = const_cast<int*>(A.innerIndexPtr());
-  lower.x = place.data();
+  lower.x = index.data();
   lower.stype = -1;
   lower.itype = CHOLMOD_INT;
   lower.xtype = CHOLMOD_REAL;

@@ -38,7 +38,7 @@ Elements::Elements(const TetMesh& mesh, std::span<const Lame> moduli, bool corot
   for (ElementBlock& block : blocks_)
     for (double& w : block.rotation[0]) w = 1;
   for (std::size_t i = 0; i < size_; ++i) {
-    const auto [at, lane] = place(i);
+    const auto [at, lane] = slot_of(i);
     ElementBlock& block = blocks_[at];
     const auto& [a, b, c, d] = mesh.tets[i];
     const Vec3& origin = mesh.vertices[a];
@@ -79,7 +79,7 @@ void Elements::turn(const double* u) noexcept {
 }
 
 Quat Elements::rotation(std::size_t element) const noexcept {
-  const auto [block, lane] = place(element);
+  const auto [block, lane] = slot_of(element);
   const auto& q = blocks_[block].rotation;
   const Quat out{q[0][lane], q[1][lane], q[2][lane], q[3][lane]};
   const double scale = 1 / std::sqrt(out.w * out.w + out.x * out.x + out.y * out.y + out.z * out.z);
@@ -87,14 +87,14 @@ Quat Elements::rotation(std::size_t element) const noexcept {
 }
 
 std::array<Vec3, 4> Elements::gradients(std::size_t element) const noexcept {
-  const auto [block, lane] = place(element);
+  const auto [block, lane] = slot_of(element);
   const auto& g = blocks_[block].gradient;
   const Vec3 x{g[0][lane], g[1][lane], g[2][lane]}, y{g[3][lane], g[4][lane], g[5][lane]}, z{g[6][lane], g[7][lane], g[8][lane]};
   return {-(x + y + z), x, y, z};
 }
 
 Lame Elements::moduli(std::size_t element) const noexcept {
-  const auto [block, lane] = place(element);
+  const auto [block, lane] = slot_of(element);
   return {0.5 * blocks_[block].two_mu[lane], blocks_[block].lambda[lane]};
 }
 
@@ -112,7 +112,7 @@ Matrix3 Elements::deformation(std::size_t element, const double* u) const noexce
 }
 
 std::array<std::uint32_t, 4> Elements::corners(std::size_t element) const noexcept {
-  const auto [block, lane] = place(element);
+  const auto [block, lane] = slot_of(element);
   const auto& corner = blocks_[block].corner;
   return {corner[0][lane] / 4 * 3, corner[1][lane] / 4 * 3, corner[2][lane] / 4 * 3, corner[3][lane] / 4 * 3};
 }

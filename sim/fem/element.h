@@ -59,10 +59,10 @@ class Elements {
  private:
   /// Consecutive elements share vertices. They go to consecutive blocks, so that the elements of one block seldom share a vertex
   /// and its sums do not wait for each other. `kDeal` blocks are filled at a time, so that the working set stays in the cache.
-  struct Place {
+  struct Slot {
     std::size_t block, lane;
   };
-  Place place(std::size_t element) const noexcept {
+  Slot slot_of(std::size_t element) const noexcept {
     const std::size_t first = element / (kDeal * kBlockSize) * kDeal, dealt = std::min(kDeal, blocks_.size() - first);
     const std::size_t i = element - first * kBlockSize;
     return {first + i % dealt, i / dealt};

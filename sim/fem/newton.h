@@ -36,7 +36,7 @@ class StageSystem {
 
   void gather(const Eigen::VectorXd& full, Eigen::VectorXd& free) const noexcept;
   void scatter(const Eigen::VectorXd& free, Eigen::VectorXd& full) const noexcept;
-  /// k(u + beta v); the place of evaluation stays in ahead().
+  /// k(u + beta v); the point of evaluation stays in ahead().
   void forces(const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& k);
   /// k from the stage's equation for a solution with velocity v: free of the stiff error left in u.
   void balanced_forces(const Stage& stage, const Eigen::VectorXd& v, Eigen::VectorXd& k);

@@ -10,7 +10,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::uint64_t kPatience = 60'000'000, kLook = 10'000, kFarewell = 1'000'000;  // [us]
+constexpr std::uint64_t kTimeout = 60'000'000, kLook = 10'000, kFarewell = 1'000'000;  // [us]
 
 Traffic difference(const Traffic& now, const Traffic& before) noexcept {
   Traffic out = now;
@@ -83,7 +83,7 @@ Result<void> SessionNetwork::connect() {
     });
   };
   drain();
-  for (const std::uint64_t end = now_ + kPatience; !all_live(); advance(now_ + kLook))
+  for (const std::uint64_t end = now_ + kTimeout; !all_live(); advance(now_ + kLook))
     if (now_ >= end) return fail(Errc::state, "R-SIM-7");
   for (User& user : users_) {
     user.number = user.client->status().client;
@@ -94,20 +94,20 @@ Result<void> SessionNetwork::connect() {
   return {};
 }
 
-void SessionNetwork::show(Sighting::Place place, std::size_t user, std::span<const std::uint8_t> datagram) const noexcept {
-  if (observer_) observer_({place, user, now_, datagram});
+void SessionNetwork::show(Sighting::CapturePoint point, std::size_t user, std::span<const std::uint8_t> datagram) const noexcept {
+  if (observer_) observer_({point, user, now_, datagram});
 }
 
 void SessionNetwork::drain() noexcept {
   while (const auto datagram = server_->poll_datagram(now_)) {
     const std::size_t user = datagram->peer - 1;
-    show(Sighting::Place::server_sends, user, datagram->bytes);
+    show(Sighting::CapturePoint::server_sends, user, datagram->bytes);
     users_[user].down->send(link_time(), datagram->bytes);
   }
   while (server_->poll_event()) continue;
   for (std::size_t i = 0; i < users_.size(); ++i) {
     while (const auto datagram = users_[i].client->poll_datagram(now_)) {
-      show(Sighting::Place::client_sends, i, *datagram);
+      show(Sighting::CapturePoint::client_sends, i, *datagram);
       users_[i].up->send(link_time(), *datagram);
     }
     while (users_[i].client->poll_event()) continue;
@@ -117,11 +117,11 @@ void SessionNetwork::drain() noexcept {
 void SessionNetwork::deliver() noexcept {
   for (std::size_t i = 0; i < users_.size(); ++i) {
     while (const auto arrival = users_[i].up->poll(link_time())) {
-      show(Sighting::Place::server_hears, i, arrival->bytes);
+      show(Sighting::CapturePoint::server_hears, i, arrival->bytes);
       static_cast<void>(server_->handle_datagram(now_, i + 1, arrival->bytes));
     }
     while (const auto arrival = users_[i].down->poll(link_time())) {
-      show(Sighting::Place::client_hears, i, arrival->bytes);
+      show(Sighting::CapturePoint::client_hears, i, arrival->bytes);
       static_cast<void>(users_[i].client->handle_datagram(now_, arrival->bytes));
     }
     users_[i].client->handle_timeout(now_);

@@ -19,8 +19,8 @@ namespace tactus::sim {
 
 /// A datagram at an end: when the end hands it to the network, or when it comes out of it there.
 struct Sighting {
-  enum class Place : std::uint8_t { client_sends, client_hears, server_sends, server_hears };
-  Place place = Place::client_sends;
+  enum class CapturePoint : std::uint8_t { client_sends, client_hears, server_sends, server_hears };
+  CapturePoint point = CapturePoint::client_sends;
   std::size_t user = 0;    ///< of the client
   std::uint64_t time = 0;  ///< [us] on the clock of both ends; never falls
   std::span<const std::uint8_t> datagram;
@@ -82,7 +82,7 @@ class SessionNetwork final : public Network {
   Result<void> lay_links(const NetworkOptions& options);
   Result<void> connect();
   void drain() noexcept;
-  void show(Sighting::Place place, std::size_t user, std::span<const std::uint8_t> datagram) const noexcept;
+  void show(Sighting::CapturePoint point, std::size_t user, std::span<const std::uint8_t> datagram) const noexcept;
   void deliver() noexcept;
   void advance(std::uint64_t until) noexcept;
   std::uint64_t time_of(std::int64_t tick) const noexcept;

@@ -28,11 +28,11 @@ double mean_edge(const TriMesh& mesh) {
 class Boxes {
  public:
   Boxes(const TriMesh& mesh, double width) : width_(width) {
-    for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) boxes_[place(mesh.vertices[v])].push_back(v);
+    for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) boxes_[cell_of(mesh.vertices[v])].push_back(v);
   }
   template <class Visit>
   void near(const Vec3& at, Visit visit) const {
-    const Place middle = place(at);
+    const Cell middle = cell_of(at);
     for (std::int64_t x = -1; x <= 1; ++x)
       for (std::int64_t y = -1; y <= 1; ++y)
         for (std::int64_t z = -1; z <= 1; ++z) {
@@ -42,13 +42,13 @@ class Boxes {
   }
 
  private:
-  using Place = std::array<std::int64_t, 3>;
-  Place place(const Vec3& v) const {
+  using Cell = std::array<std::int64_t, 3>;
+  Cell cell_of(const Vec3& v) const {
     const auto box = [this](double x) { return static_cast<std::int64_t>(std::floor(x / width_)); };
     return {box(v.x), box(v.y), box(v.z)};
   }
   double width_;
-  std::map<Place, std::vector<std::uint32_t>> boxes_;
+  std::map<Cell, std::vector<std::uint32_t>> boxes_;
 };
 
 constexpr std::int32_t kFixed = -1;

@@ -73,7 +73,7 @@ namespace {
 constexpr double kSettle = 0.1, kSettleYielding = 0.02;  // tau [s]: a rigid object, and those that yield
 constexpr double kFraction = kTick / kSettle, kFractionYielding = kTick / kSettleYielding;
 constexpr double kClose = 1e-4, kCloseTurn = 2e-3;  // [m, rad]
-constexpr double kFar = 0.3, kFarTurn = 1.0;        // [m, rad] then the object is put to its place
+constexpr double kFar = 0.3, kFarTurn = 1.0;        // [m, rad] then the object is set to the server's pose
 
 /// Rotation vector of a unit quaternion [rad].
 Vec3 turn_of(const Quat& q) noexcept {
@@ -222,7 +222,7 @@ void Prediction::correct_rigid(std::uint32_t object, std::int64_t then) noexcept
   move(object, is_far ? displacement : part(displacement, kClose), is_far ? turn : part(turn, kCloseTurn));
 }
 
-/// The surface stays for a period, and server and own simulation begin theirs at different times: between two own places lies that which
+/// The surface stays for a period, and server and own simulation begin theirs at different times: between two own positions lies that which
 /// it would have had when the server's began. What is shown stays for a period, too: forces approach a new surface from there.
 void Prediction::correct_yielding(std::size_t object, std::int64_t then) noexcept {
   auto& [period, age, offset] = yielding_[object - rigid_];

@@ -149,8 +149,8 @@ class Prediction {
 
  private:
   struct Yielding {
-    std::int64_t period;   // [ticks] from one place of the surface to the next
-    std::int64_t age = 0;  // [ticks] of the place that was heard
+    std::int64_t period;   // [ticks] from one position of the surface to the next
+    std::int64_t age = 0;  // [ticks] of the position that was heard
     Vec3 offset{};         // [m] mean of server's - own
   };
   struct Mesh {

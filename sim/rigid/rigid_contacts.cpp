@@ -13,7 +13,7 @@ using namespace rigid;
 namespace {
 
 constexpr double kSwept = 1e-4;     // [m] a pair that approaches by less in a tick is not swept
-constexpr double kClose = 1e-5;     // [m] apart: the place of a touch is known well enough
+constexpr double kClose = 1e-5;     // [m] apart: the position of a touch is known well enough
 constexpr double kMostLooks = 256;  // along the path of one tick
 
 }  // namespace

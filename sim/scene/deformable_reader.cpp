@@ -7,7 +7,7 @@ namespace tactus::sim {
 namespace {
 
 constexpr double kFarthest = 100;  // [m] as for other objects
-constexpr Range kPlace{-kFarthest, kFarthest};
+constexpr Range kPosition{-kFarthest, kFarthest};
 constexpr double kTetBytes = 3000;            // as measured, without a factorised matrix
 constexpr std::uint64_t kMostTets = 170'000;  // of a scene
 constexpr double kRounding = 1e-9;            // of the mesh's size: tolerance of boxes and corners
@@ -36,7 +36,7 @@ Box bounds(const TetMesh& mesh) {
 
 /// The box of a table, a little larger than written.
 Box read_box(TomlReader& in, const toml::table& table, const std::string& path, double margin) {
-  const Box box{in.vector(table, path, "low", kPlace), in.vector(table, path, "high", kPlace)};
+  const Box box{in.vector(table, path, "low", kPosition), in.vector(table, path, "high", kPosition)};
   const Vec3 grown{margin, margin, margin};
   return {box.low - grown, box.high + grown};
 }
@@ -133,7 +133,7 @@ void read_region(TomlReader& in, const toml::table& table, double margin, SceneD
   const SceneMaterial material = read_material(in, table, path, body.materials.front());
   const bool is_box = table.contains("low") || table.contains("high");
   const Box box = is_box ? read_box(in, table, path, margin) : Box{};
-  const Vec3 point = is_box ? Vec3{} : in.vector(table, path, "point", kPlace);
+  const Vec3 point = is_box ? Vec3{} : in.vector(table, path, "point", kPosition);
   const Vec3 normal = is_box ? Vec3{} : in.vector(table, path, "normal", {-1, 1});
   body.materials.resize(body.mesh.tets.size(), body.materials.front());
   bool any = false;
@@ -177,7 +177,7 @@ SceneDeformable read_deformable(TomlReader& in, const toml::table& table, const 
   body.rate = in.whole(table, path, "rate", {1, 1000}, 1);
   body.method = kMethods.at(in.word(table, path, "method", kMethods, "auto"));
   body.solver = kSolvers.at(in.word(table, path, "solver", kSolvers, "auto"));
-  const Vec3 position = in.vector(table, path, "position", kPlace);
+  const Vec3 position = in.vector(table, path, "position", kPosition);
   if (in.failed()) return body;
 
   const Box box = bounds(body.mesh);

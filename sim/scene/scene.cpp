@@ -23,7 +23,7 @@ constexpr std::size_t kMostObjects = 4096, kMostDeformables = 255;  // limits of
 constexpr std::size_t kMostUsers = 64;
 constexpr double kLongest = 24 * 3600.0;                                           // [s]
 constexpr std::array<std::string_view, 6> kAxes{"x", "y", "z", "rx", "ry", "rz"};  // order of the bits in Dof
-constexpr Range kPlace{-kFarthest, kFarthest};
+constexpr Range kPosition{-kFarthest, kFarthest};
 
 std::uint8_t read_axes(TomlReader& in, const toml::table& table, const std::string& path, std::string_view key,
                        std::uint8_t fallback) {
@@ -109,7 +109,7 @@ SceneObject read_object(TomlReader& in, const toml::table& table, const std::fil
   object.mass = in.number(table, path, "mass", {1e-6, 1e6});
   object.friction = in.number(table, path, "friction", {0, 100});
   object.damping = in.number(table, path, "damping", {0, 1}, 1.0);
-  object.pose.position = in.vector(table, path, "position", kPlace);
+  object.pose.position = in.vector(table, path, "position", kPosition);
   object.pose.rotation = read_rotation(in, table, path);
   object.velocity = read_motion(in, table, "velocity", {-1000, 1000}, object.dof & 7u);
   object.angular_velocity = read_motion(in, table, "angular_velocity", {-1000, 1000}, object.dof >> 3);
@@ -125,7 +125,7 @@ SceneMsd read_msd(TomlReader& in, const toml::table& table) {
   msd.object.stiffness = in.number(table, path, "stiffness", {0, 1e9});
   msd.object.damping = in.number(table, path, "damping", {0, 1e6});
   msd.object.mass = in.number(table, path, "mass", {1e-6, 1e6});
-  msd.position = in.vector(table, path, "position", kPlace);
+  msd.position = in.vector(table, path, "position", kPosition);
   const std::size_t side = in.word(table, path, "faces", {"x", "-x", "y", "-y", "z", "-z"}, "z");
   msd.axis = static_cast<unsigned>(side / 2);
   const double sign = side % 2 == 0 ? 1 : -1;
@@ -180,11 +180,11 @@ PathPhase read_phase(TomlReader& in, const toml::table& table) {
   phase.name = in.text(table, path, "name");
   phase.frame =
       static_cast<PathFrame>(in.word(table, path, "frame", {"world", "hand", "object", "toward_goal", "at_goal"}, "world"));
-  phase.to = in.vector(table, path, "to", kPlace);
+  phase.to = in.vector(table, path, "to", kPosition);
   phase.duration = in.number(table, path, "duration", {kTick, kLongest});
   phase.button = in.flag(table, path, "button", false);
   phase.turns = in.number(table, path, "turns", {-1e4, 1e4}, 0.0);
-  if (phase.turns != 0) phase.centre = in.vector(table, path, "centre", kPlace);
+  if (phase.turns != 0) phase.centre = in.vector(table, path, "centre", kPosition);
   else if (const toml::node* centre = table.get("centre"))
     in.fail_at(centre->source(), Errc::invalid, "R-SCN-4", path + ".turns", "say how many turns round this centre");
   return phase;
@@ -192,32 +192,32 @@ PathPhase read_phase(TomlReader& in, const toml::table& table) {
 
 std::uint32_t read_watched(TomlReader& in, const toml::table& table, const Scene& scene) {
   const std::string name = in.text(table, "user", "object");
-  std::uint32_t place = 0;
+  std::uint32_t index = 0;
   const auto is_among = [&](const auto& objects) {
     for (const auto& object : objects) {
       if (object.name == name) return true;
-      ++place;
+      ++index;
     }
     return false;
   };
-  if (is_among(scene.objects) || is_among(scene.msds) || is_among(scene.deformables)) return place;
+  if (is_among(scene.objects) || is_among(scene.msds) || is_among(scene.deformables)) return index;
   in.fail_at(table.source(), Errc::invalid, "R-SCN-7", "user.object", "name an object of this scene");
   return 0;
 }
 
 SceneUser read_user(TomlReader& in, const toml::table& table, const Scene& scene) {
   const std::string path = "user";
-  in.allow(table, path, {"name", "grip", "pace", "tremor", "variation", "scatter", "object", "goal", "start", "device", "path"});
+  in.allow(table, path, {"name", "grip", "duration_scale", "tremor", "variation", "scatter", "object", "goal", "start", "device", "path"});
   SceneUser user;
   user.name = in.name(table, path);
   user.grip = static_cast<Grip>(in.word(table, path, "grip", {"loose", "normal", "firm"}, "normal"));
-  user.pace = in.number(table, path, "pace", {0.1, 10}, 1.0);
+  user.duration_scale = in.number(table, path, "duration_scale", {0.1, 10}, 1.0);
   user.tremor = in.number(table, path, "tremor", {0, 0.01}, 0.0);
   user.variation = in.number(table, path, "variation", {0, 0.5}, 0.0);
   user.scatter = in.number(table, path, "scatter", {0, 0.1}, 0.0);
   user.object = read_watched(in, table, scene);
-  user.start = in.vector(table, path, "start", kPlace);
-  user.goal = in.vector(table, path, "goal", kPlace, Vec3{});
+  user.start = in.vector(table, path, "start", kPosition);
+  user.goal = in.vector(table, path, "goal", kPosition, Vec3{});
   if (const toml::table* device = in.table(table, path, "device")) user.device = read_device(in, *device);
   for (const toml::table* phase : in.tables(table, path, "path")) user.path.push_back(read_phase(in, *phase));
   return user;
@@ -237,7 +237,7 @@ void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::
   scene.name = in.text(root, "", "name");
   scene.gravity = in.vector(root, "", "gravity", {-1000, 1000});
   scene.duration = in.number(root, "", "duration", {kTick, kLongest});
-  if (root.contains("floor")) scene.floor = in.number(root, "", "floor", kPlace);
+  if (root.contains("floor")) scene.floor = in.number(root, "", "floor", kPosition);
   if (const toml::table* touch = in.table(root, "", "touch")) scene.touch = read_touch(in, *touch);
   if (const toml::table* asked = in.table(root, "", "compensation")) scene.compensation = read_compensation(in, *asked);
   if (const toml::table* asked = in.table(root, "", "interest")) scene.interest = read_interest(in, *asked);
@@ -372,9 +372,9 @@ tl::expected<Scene, Diagnostic> parse_attached_scene(std::string_view text) {
   return parse_beside(text, "scene of the trace", scene_folder(), refuse_paths);
 }
 
-void set_pace(Scene& scene, double pace) noexcept {
-  for (SceneUser& user : scene.users) user.pace *= pace;
-  scene.duration *= pace;
+void scale_durations(Scene& scene, double factor) noexcept {
+  for (SceneUser& user : scene.users) user.duration_scale *= factor;
+  scene.duration *= factor;
 }
 
 void set_tremor(Scene& scene, double rms) noexcept {

@@ -124,7 +124,7 @@ struct PathPhase {
 struct SceneUser {
   std::string name;
   Grip grip = Grip::normal;
-  double pace = 1;           ///< times the duration of every phase: 0.5 is twice as fast
+  double duration_scale = 1;           ///< times the duration of every phase: 0.5 is twice as fast
   double tremor = 0;         ///< [m] RMS per axis of the free hand, 8-12 Hz
   double variation = 0;      ///< fraction by which hand, speed and targets vary with the seed
   double scatter = 0;        ///< [m] by which targets vary with the seed
@@ -166,7 +166,7 @@ struct Scene {
 ///   R-SCN-5 wrong type                 R-SCN-6 value out of range        R-SCN-7 unknown or repeated name
 ///   R-SCN-8 a file that the scene names cannot be used               R-SCN-9 over 4 MiB, or nested over 32 deep
 
-/// err  R-SCN-1..9; `file` names the place in errors; other files are looked for beside it.
+/// err  R-SCN-1..9; `file` names the location in errors; other files are looked for beside it.
 tl::expected<Scene, Diagnostic> parse_scene(std::string_view text, std::string_view file);
 tl::expected<Scene, Diagnostic> load_scene(const std::string& path);
 /// The scene that a trace carries, which a stranger may have written: it names files that come with Tactus, no paths.
@@ -179,8 +179,8 @@ tl::expected<std::string, Diagnostic> find_scene(const std::string& name);
 /// Of the file and the meshes that it names: equal for equal scenes, else almost certainly different; never 0.
 std::uint64_t fingerprint(const Scene& scene) noexcept;
 
-/// All hands take `pace` times their time, and the scene lasts as much longer or shorter.   pre  pace > 0
-void set_pace(Scene& scene, double pace) noexcept;
+/// All hands take `factor` times their time, and the scene lasts as much longer or shorter.   pre  factor > 0
+void scale_durations(Scene& scene, double factor) noexcept;
 /// [m] RMS per axis, of all hands.
 void set_tremor(Scene& scene, double rms) noexcept;
 

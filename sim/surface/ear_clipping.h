@@ -18,7 +18,7 @@ namespace tactus::sim {
 
 class EarClipping {
  public:
-  /// in  normal  of the polygon, not 0;  corner  places in the order of the polygon
+  /// in  normal  of the polygon, not 0;  corner  positions in the order of the polygon
   EarClipping(const std::vector<Vec3>& corners, const Vec3& normal) {
     const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
     const bool along_x = x >= y && x >= z, along_y = !along_x && y >= z;

@@ -131,15 +131,15 @@ tl::unexpected<Diagnostic> several(std::string first, std::string second) {
 
 /// A number that differs between all of a group: the only one, or the first of those that change together.
 tl::expected<std::size_t, Diagnostic> number_of(const Group& group, ReadNotes& notes) {
-  const std::vector<std::size_t> places = varying(group);
-  if (places.empty()) return group[0].numbers.size();  // one file
-  for (const std::size_t place : places) {
-    if (distinct(group, place) != group.size()) continue;
-    if (places.size() > 1)
+  const std::vector<std::size_t> indices = varying(group);
+  if (indices.empty()) return group[0].numbers.size();  // one file
+  for (const std::size_t index : indices) {
+    if (distinct(group, index) != group.size()) continue;
+    if (indices.size() > 1)
       notes.add("", "several numbers of the names change together; the first in which all differ counts", group[0].full);
-    return place;
+    return index;
   }
-  const std::size_t last = places.back();
+  const std::size_t last = indices.back();
   const auto other =
       std::find_if(group.begin(), group.end(), [&](const Name& n) { return n.pattern(last) != group[0].pattern(last); });
   return several(group[0].pattern(last), other->pattern(last));
@@ -150,9 +150,9 @@ tl::expected<Group, Diagnostic> only_group(std::vector<Name> names) {
   for (Name& name : names) groups[name.words].push_back(std::move(name));
   if (groups.size() == 1) return std::move(groups.begin()->second);
   const auto pattern = [](const Group& group) {
-    const auto places = varying(group);
+    const auto indices = varying(group);
     const std::size_t last = group[0].numbers.size();
-    return group[0].pattern(!places.empty() ? places.back() : last > 0 ? last - 1 : 0);
+    return group[0].pattern(!indices.empty() ? indices.back() : last > 0 ? last - 1 : 0);
   };
   return several(pattern(groups.begin()->second), pattern(std::next(groups.begin())->second));
 }
@@ -225,14 +225,14 @@ tl::expected<std::vector<FrameFile>, Diagnostic> order_frames(std::vector<std::s
   for (const std::string& file : files) names.push_back(split(file));
   take_signs(names);
   TACTUS_TRY(auto group, only_group(std::move(names)));
-  TACTUS_TRY(const auto place, number_of(group, notes));
+  TACTUS_TRY(const auto index, number_of(group, notes));
   if (group.size() == 1) return std::vector<FrameFile>{{group[0].full, 0}};
 
   std::size_t places = 0;
-  for (const Name& name : group) places = std::max(places, decimals(name.numbers[place]));
+  for (const Name& name : group) places = std::max(places, decimals(name.numbers[index]));
   std::vector<std::pair<std::int64_t, std::string>> frames;
   for (const Name& name : group) {
-    const auto value = scaled(name.numbers[place], places);
+    const auto value = scaled(name.numbers[index], places);
     if (!value) return refused("R-SEQ-5", name.full + ": its number has more than 18 digits");
     frames.emplace_back(*value, name.full);
   }

@@ -204,20 +204,20 @@ tl::expected<std::vector<double>, Diagnostic> read_accessor(const GltfFile& file
   }
   budget -= out.size();
   if (!a.sparse) return out;
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> indices;
   bool rises = true;
-  const auto take_place = [&](std::size_t, std::size_t, double v) {
-    const auto place = static_cast<std::size_t>(v);
-    rises = rises && place < a.count && (places.empty() || place > places.back());
-    places.push_back(place);
+  const auto take_index = [&](std::size_t, std::size_t, double v) {
+    const auto index = static_cast<std::size_t>(v);
+    rises = rises && index < a.count && (indices.empty() || index > indices.back());
+    indices.push_back(index);
   };
   const GltfAccessor::Sparse& s = *a.sparse;
   if (s.index_component != 5121 && s.index_component != 5123 && s.index_component != 5125)
     return broken(Errc::malformed, "R-SRF-4", name + ".sparse: indices of another type");
-  if (!read_elements(file.views[s.index_view], s.index_offset, s.count, 1, s.index_component, false, take_place)) return cut();
+  if (!read_elements(file.views[s.index_view], s.index_offset, s.count, 1, s.index_component, false, take_index)) return cut();
   if (!rises) return broken(Errc::malformed, "R-SRF-4", name + ".sparse: its indices do not rise, or name no element");
   if (!read_elements(file.views[s.value_view], s.value_offset, s.count, a.width, a.component, a.normalized,
-                     [&](std::size_t i, std::size_t k, double v) { out[places[i] * a.width + k] = v; }))
+                     [&](std::size_t i, std::size_t k, double v) { out[indices[i] * a.width + k] = v; }))
     return cut();
   return out;
 }

@@ -158,7 +158,7 @@ Read GltfScene::add_track(const GltfChannel& channel) {
 
 // ==== meshes ====
 
-tl::expected<std::vector<Vec3>, Diagnostic> GltfScene::read_places(std::size_t accessor) {
+tl::expected<std::vector<Vec3>, Diagnostic> GltfScene::read_positions(std::size_t accessor) {
   TACTUS_TRY(const auto numbers, read_accessor(file_, accessor, 3, budget_));
   std::vector<Vec3> out(numbers.size() / 3);
   for (std::size_t v = 0; v < out.size(); ++v) out[v] = {numbers[3 * v], numbers[3 * v + 1], numbers[3 * v + 2]};
@@ -193,11 +193,11 @@ Read GltfScene::add_primitive(std::size_t node, const GltfPrimitive& primitive) 
     return {};
   }
   Part part{.node = node, .skin = {}, .base = {}, .targets = {}, .influences = {}};
-  TACTUS_TRY(part.base, read_places(*primitive.position));
+  TACTUS_TRY(part.base, read_positions(*primitive.position));
   for (const Index target : primitive.targets) {
     std::vector<Vec3>& shifts = part.targets.emplace_back();
     if (!target) continue;  // it moves normals or colours
-    TACTUS_TRY(shifts, read_places(*target));
+    TACTUS_TRY(shifts, read_positions(*target));
     if (shifts.size() != part.base.size())
       return broken(Errc::malformed, "R-SRF-4",
                     "a morph target has " + std::to_string(shifts.size()) + " vertices of " + std::to_string(part.base.size()));
@@ -273,13 +273,13 @@ Read GltfScene::add_faces(const GltfPrimitive& primitive, std::size_t vertices, 
 
 // ==== one vertex from many ====
 
-/// What makes up a vertex: its node, its place, and what moves it.
+/// What makes up a vertex: its node, its position, and what moves it.
 template <class Use>
 void GltfScene::each_number(const Part& part, std::size_t vertex, Use use) const {
-  const auto use_place = [&](const Vec3& p) { use(p.x), use(p.y), use(p.z); };
+  const auto use_position = [&](const Vec3& p) { use(p.x), use(p.y), use(p.z); };
   use(static_cast<double>(part.node));
-  use_place(part.base[vertex]);
-  for (const std::vector<Vec3>& target : part.targets) use_place(target.empty() ? Vec3{} : target[vertex]);
+  use_position(part.base[vertex]);
+  for (const std::vector<Vec3>& target : part.targets) use_position(target.empty() ? Vec3{} : target[vertex]);
   const std::size_t each = part.influences.size() / part.base.size();
   for (std::size_t k = 0; k < each; ++k) {
     use(static_cast<double>(part.influences[vertex * each + k].joint));
@@ -340,7 +340,7 @@ Read GltfScene::make_rest(const GltfOptions& options) {
     if (rule != "R-SRF-11" && rule != "R-SRF-12" && rule != "R-SRF-13") return tl::unexpected(made.error());
     auto apart = make_surface(std::move(soup), {.drop_degenerate = options.drop_degenerate});
     if (!apart) return tl::unexpected(made.error());
-    notes.add("", "vertices at one place are kept apart, as the file has them: joined, they would break " + std::string(rule));
+    notes.add("", "vertices at one position are kept apart, as the file has them: joined, they would break " + std::string(rule));
     made = std::move(apart);
   }
   rest_ = std::move(*made);

@@ -20,7 +20,7 @@ struct GltfOptions {
   Axes axes = Axes::as_the_format_says;
 };
 
-/// Corners of triangles that are alike in place and in what moves them are one vertex, as programs split vertices where normals or textures
+/// Corners of triangles that are alike in position and in what moves them are one vertex, as programs split vertices where normals or textures
 /// differ. Positions between keys are those of the specification: lines, arcs, steps or cubic splines.
 class GltfScene {
  public:
@@ -70,7 +70,7 @@ class GltfScene {
   tl::expected<void, Diagnostic> add_primitive(std::size_t node, const GltfPrimitive& primitive);
   tl::expected<void, Diagnostic> add_influences(const GltfPrimitive& primitive, Part& part);
   tl::expected<void, Diagnostic> add_faces(const GltfPrimitive& primitive, std::size_t vertices, bool mirrored);
-  tl::expected<std::vector<Vec3>, Diagnostic> read_places(std::size_t accessor);
+  tl::expected<std::vector<Vec3>, Diagnostic> read_positions(std::size_t accessor);
   tl::expected<void, Diagnostic> make_rest(const GltfOptions& options);
   std::vector<std::uint32_t> alike() const;
   template <class Use>

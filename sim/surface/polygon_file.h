@@ -23,7 +23,7 @@ struct PolygonSoup {
 };
 using SoupResult = tl::expected<PolygonSoup, Diagnostic>;
 
-/// An error of this library, with its place.
+/// An error of this library, with its location.
 tl::unexpected<Diagnostic> broken(Errc code, RuleName rule, std::string detail, std::string file = {});
 /// "'the line'" and its number: R-SRF-4 unless another rule is named.
 tl::unexpected<Diagnostic> broken_line(const LineReader& lines, std::string_view why = {}, Errc code = Errc::malformed,

@@ -27,7 +27,7 @@ Vec3 polygon_normal(const std::vector<Vec3>& vertices, const Polygon& polygon) {
   return sum;
 }
 
-std::string place_of(const Vec3& p) {
+std::string position_text(const Vec3& p) {
   std::string out = "(";
   for (const double c : {p.x, p.y, p.z}) {
     char digits[32];
@@ -140,16 +140,16 @@ class SurfaceMaker {
   }
 
   tl::expected<void, Diagnostic> append_ears(std::size_t face, const Polygon& polygon) {
-    std::vector<Vec3> places;
-    for (const std::uint32_t v : polygon) places.push_back(file_.mesh.vertices[v]);
-    const EarClipping ears(places, polygon_normal(file_.mesh.vertices, polygon));
+    std::vector<Vec3> positions;
+    for (const std::uint32_t v : polygon) positions.push_back(file_.mesh.vertices[v]);
+    const EarClipping ears(positions, polygon_normal(file_.mesh.vertices, polygon));
     const Error error = fail(Errc::invalid, "R-SRF-6").value();
     if (const auto crossing = ears.crossing()) {
       const auto edge = [&](std::size_t from) {
         const std::size_t ends[] = {from, (from + 1) % polygon.size()};
         std::string out;
         for (const std::size_t at : ends)
-          out += (out.empty() ? "" : " to ") + (soup_.first_number ? number(file_.vertex[polygon[at]]) : place_of(places[at]));
+          out += (out.empty() ? "" : " to ") + (soup_.first_number ? number(file_.vertex[polygon[at]]) : position_text(positions[at]));
         return out;
       };
       return at_face(face, error, "its edges " + edge(crossing->first) + " and " + edge(crossing->second) + " cross");
@@ -190,10 +190,10 @@ class SurfaceMaker {
         is_taken[corner] = true;
       } else {
         soup_.notes.add("vertices", "one that joins parts of the surface at a point alone is split: each part has its own",
-                        soup_.first_number ? "vertex " + number(file_.vertex[corner]) : "at " + place_of(mesh.vertices[corner]));
+                        soup_.first_number ? "vertex " + number(file_.vertex[corner]) : "at " + position_text(mesh.vertices[corner]));
         file_.vertex.push_back(file_.vertex[corner]);
-        const Vec3 place = mesh.vertices[corner];
-        mesh.vertices.push_back(place);
+        const Vec3 position = mesh.vertices[corner];
+        mesh.vertices.push_back(position);
         corner = own[i] = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
       }
     }
@@ -223,12 +223,12 @@ class SurfaceMaker {
     return std::to_string(std::uint64_t{vertex} + soup_.first_number.value_or(0));
   }
 
-  /// "vertices 1 1 2", as the file counts; places where it does not.
+  /// "vertices 1 1 2", as the file counts; positions where it does not.
   std::string corners(std::size_t face) const {
     const Polygon& polygon = soup_.polygons[face];
     std::string out = soup_.first_number ? "vertices" : "corners";
     for (std::size_t i = 0; i < std::min(polygon.size(), kNamedCorners); ++i)
-      out += ' ' + (soup_.first_number ? number(polygon[i]) : place_of(soup_.vertices[polygon[i]]));
+      out += ' ' + (soup_.first_number ? number(polygon[i]) : position_text(soup_.vertices[polygon[i]]));
     return polygon.size() > kNamedCorners ? out + " ..." : out;
   }
 
@@ -240,7 +240,7 @@ class SurfaceMaker {
   tl::unexpected<Diagnostic> at_vertex(std::uint32_t vertex, const Error& error) const {
     const std::uint64_t line = vertex < soup_.vertex_lines.size() ? soup_.vertex_lines[vertex] : 0;
     return tl::unexpected(Diagnostic{
-        .error = error, .line = line, .kind = "vertex", .element = vertex, .detail = place_of(soup_.vertices[vertex])});
+        .error = error, .line = line, .kind = "vertex", .element = vertex, .detail = position_text(soup_.vertices[vertex])});
   }
 
   tl::unexpected<Diagnostic> degenerate() const {

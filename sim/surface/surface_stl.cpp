@@ -30,7 +30,7 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) noexcept {
 void merge_corners(PolygonSoup& soup) {
   std::vector<std::uint32_t> order(soup.vertices.size()), number(soup.vertices.size());
   std::iota(order.begin(), order.end(), 0U);
-  const auto key = [&](std::uint32_t v) {  // NaN would have no order; 0 and -0 are one place
+  const auto key = [&](std::uint32_t v) {  // NaN would have no order; 0 and -0 are one position
     const auto bits = [](double c) { return std::bit_cast<std::int64_t>(c == 0 ? 0.0 : c); };
     return std::array{bits(soup.vertices[v].x), bits(soup.vertices[v].y), bits(soup.vertices[v].z), std::int64_t{v}};
   };

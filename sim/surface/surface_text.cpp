@@ -61,7 +61,7 @@ class ObjReader {
     }
     soup_.vertex_lines.push_back(static_cast<std::uint32_t>(at_));
     if (words_.size() == 5 && parse_number<double>(words_[4]) != 1.0)
-      soup_.notes.add("vertices", "their weight, the fourth number, is left out", place());
+      soup_.notes.add("vertices", "their weight, the fourth number, is left out", location());
     return {};
   }
 
@@ -91,10 +91,10 @@ class ObjReader {
                                                       "usemtl", "mtllib", "usemap", "maplib", "lod", "bevel", "c_interp"};
     if (std::find(kLooks.begin(), kLooks.end(), kind) != kLooks.end()) return;
     soup_.notes.add('\'' + std::string(kind.substr(0, 20)) + '\'', "lines that begin with it are left out: only v and f are read",
-                    place());
+                    location());
   }
 
-  std::string place() const { return "line " + std::to_string(at_); }
+  std::string location() const { return "line " + std::to_string(at_); }
 
   LineReader lines_;
   PolygonSoup soup_;

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kVolumeTolerance = 1e-9;  // relative; TetGen writes 16 digits
-constexpr double kSamePlace = 1e-12;       // of the surface's size; likewise
+constexpr double kSamePosition = 1e-12;       // of the surface's size; likewise
 constexpr double kFar = 1000;              // of the surface's size: so far from the origin 16 digits are too few
 
 tl::unexpected<Diagnostic> unfilled(Errc code, RuleName rule, std::string detail) {
@@ -38,7 +38,7 @@ tl::expected<void, Diagnostic> check_options(const FillOptions& options) {
   return {};
 }
 
-tl::expected<void, Diagnostic> check_places(const TriMesh& mesh) {
+tl::expected<void, Diagnostic> check_positions(const TriMesh& mesh) {
   std::vector<std::uint32_t> order(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0U);
   const auto key = [&](std::uint32_t v) {
@@ -139,7 +139,7 @@ Vec3 far_middle(const TriMesh& surface) {
 /// Restore the bits of the surface's vertices: TetGen writes only 16 digits.
 void restore_vertices(const TriMesh& surface, TetMesh& mesh) {
   const Bounds box = bounds(surface.vertices);
-  const double near = kSamePlace * norm(box.high - box.low);
+  const double near = kSamePosition * norm(box.high - box.low);
   for (std::size_t v = 0; v < std::min(surface.vertices.size(), mesh.vertices.size()); ++v)
     if (norm(mesh.vertices[v] - surface.vertices[v]) <= near) mesh.vertices[v] = surface.vertices[v];
 }
@@ -162,7 +162,7 @@ tl::expected<TetMesh, Diagnostic> fill(const TriMesh& surface, const FillOptions
   TACTUS_CHECK(check(surface));
   TACTUS_CHECK(check_options(options)
                    .and_then([&] { return check_closed(surface); })
-                   .and_then([&] { return check_places(surface); })
+                   .and_then([&] { return check_positions(surface); })
                    .and_then([&] { return check_volume(surface, options); }));
 
   const PrivateFolder folder;

@@ -26,7 +26,7 @@ constexpr bool is_curved_tet(std::size_t type) noexcept { return type == 11 || (
 
 struct MshMesh {
   TetFile file;
-  std::vector<std::pair<std::size_t, std::uint32_t>> tags;  ///< a vertex's number in the file, its place in the mesh
+  std::vector<std::pair<std::size_t, std::uint32_t>> tags;  ///< a vertex's number in the file, its index in the mesh
 
   void reserve(std::size_t count) {
     file.mesh.vertices.reserve(count);

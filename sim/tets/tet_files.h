@@ -11,7 +11,7 @@
 /// R-TET-10  truncated       it ends before everything announced was there
 /// R-TET-11  malformed       a number is expected, and the word is none or does not fit its type
 /// R-TET-12  invalid         a number is NaN or infinite
-/// R-TET-13  malformed       a line has more or fewer words than its place asks for, or a section is missing or occurs twice
+/// R-TET-13  malformed       a line has more or fewer words than its position asks for, or a section is missing or occurs twice
 /// R-TET-14  unsupported     not three dimensions, not linear tetrahedra, a binary .msh of version 4.0, or another version
 /// R-TET-15  invalid         vertices or tetrahedra are not numbered one by one from 0 or 1 (.node, .ele), a vertex number occurs
 ///                           twice, or a tetrahedron names a vertex that does not exist

@@ -121,7 +121,7 @@ Hand::Hand(const SceneUser& user, Grip grip, std::uint64_t seed)
       from_(user.start),
       to_(user.start) {
   for (PathPhase& phase : user_.path) {
-    phase.duration *= user.pace * random_.uniform(1 - user.variation, 1 + user.variation);
+    phase.duration *= user.duration_scale * random_.uniform(1 - user.variation, 1 + user.variation);
     for (double* part : {&phase.to.x, &phase.to.y, &phase.to.z}) *part += random_.uniform(-user.scatter, user.scatter);
   }
 }
@@ -143,14 +143,14 @@ DeviceSample Hand::step(const Vec3& rendered, const Pose& object) noexcept {
   const double duration = static_cast<double>(end_ - begin_) * kTick;
   const double fraction = moving ? static_cast<double>(tick_ - begin_) * kTick / duration : 1;
   const MinimumJerk done = minimum_jerk(fraction);
-  Aim target{from_ + done.place * (to_ - from_), moving ? (done.slope / duration) * (to_ - from_) : Vec3{}};
+  Aim target{from_ + done.position * (to_ - from_), moving ? (done.slope / duration) * (to_ - from_) : Vec3{}};
   if (moving && spiral_) {
     target = spiral_->at(fraction);
     target.velocity = (1 / duration) * target.velocity;
   }
   aim_speed_ = norm(target.velocity);
 
-  const Vec3 pull = impedance_.stiffness * (target.place - position_) + impedance_.damping * (target.velocity - velocity_);
+  const Vec3 pull = impedance_.stiffness * (target.position - position_) + impedance_.damping * (target.velocity - velocity_);
   const Vec3 force = only(pull + rendered + tremor_.force(static_cast<double>(tick_) * kTick), user_.device.axes);
   velocity_ = velocity_ + (kTick / impedance_.mass) * force;
   position_ = position_ + kTick * velocity_;

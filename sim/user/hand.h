@@ -39,7 +39,7 @@ std::uint64_t hand_seed(std::uint64_t seed, std::size_t user) noexcept;
 /// Fraction of the path done at fraction s of the time, with zero velocity and acceleration at both ends (Flash and Hogan 1985), and its
 /// slope.
 struct MinimumJerk {
-  double place, slope;
+  double position, slope;
 };
 constexpr MinimumJerk minimum_jerk(double s) noexcept {
   return {s * s * s * (10 + s * (-15 + 6 * s)), 30 * s * s * (1 - s) * (1 - s)};
@@ -77,7 +77,7 @@ Vec3 waypoint(PathFrame frame, const Vec3& to, const Pose& object, const Vec3& g
 
 /// Target position and velocity of the hand.
 struct Aim {
-  Vec3 place, velocity;  ///< [m], [m/s]
+  Vec3 position, velocity;  ///< [m], [m/s]
 };
 
 /// Round a vertical axis from one point to another; radius, angle and height change evenly.

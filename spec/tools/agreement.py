@@ -102,7 +102,7 @@ def flag_findings(book):
         yield f"registry, section 4: `flags` are {stated[1]}, not assigned {stated[2]}; 20, section 4 has bits 0..{len(bits) - 1}"
     if [int(bit) for bit in re.findall(r"(\d+) \(", book.rules["R-STR-4"]["text"])] != bits:
         yield f"rules.csv: R-STR-4 does not name bits 0..{len(bits) - 1}"
-    checks = {int(bit): place for bit, place in re.findall(r"^if bit (\d+) of flags is set: (.*)$", section(book, "20", "8"), re.M)}
+    checks = {int(bit): where for bit, where in re.findall(r"^if bit (\d+) of flags is set: (.*)$", section(book, "20", "8"), re.M)}
     if sorted(checks) != [bit for bit, cells in of_bit.items() if cells[2] != "none"]:
         yield f"20, section 8: the order of checks has the elements of bits {sorted(checks)}"
     for bit, cells in of_bit.items():
@@ -116,7 +116,7 @@ def flag_findings(book):
 
 
 def names_in(text: str) -> dict:
-    return {int(number): name for number, name in re.findall(r"(\d+) ([a-z]+)", text)}
+    return {int(number): name for number, name in re.findall(r"(\d+) ([a-z]+(?: [a-z]+)*)", text)}
 
 
 def session_findings(book):
@@ -185,8 +185,8 @@ def limit_findings(book, conformance: Path):
 
 # ---- The conformance suite ------------------------------------------------------------------------------------------
 def is_in_order(members, order: list) -> bool:
-    places = [order.index(name) if name in order else -1 for name in members]
-    return -1 not in places and places == sorted(places)
+    indices = [order.index(name) if name in order else -1 for name in members]
+    return -1 not in indices and indices == sorted(indices)
 
 
 def kind_of(line: dict) -> str:

@@ -82,12 +82,12 @@ class Book:
         of_format = sorted((row for row in self.rules.values() if row["chapter"] != "-"),
                            key=lambda r: (r["rule"].split("-")[1] != "VAR", rule_key(r["rule"])))
         of_library = [row for row in self.rules.values() if row["chapter"] == "-"]
-        place = {rule: f"{chapter.short}, section {section}" for rule, (chapter, _, section) in self.defined.items()}
+        defined_in = {rule: f"{chapter.short}, section {section}" for rule, (chapter, _, section) in self.defined.items()}
         return "\n".join((
             "# Index of rules\n\nInformative. The tables of the chapters are normative.\n\n## 1 Rules of the format\n\n"
             "\"Action\" is what a receiver of packets does (95, section 5).\n",
             table("rule | what must hold | class | action | defined in", (
-                f"{r['rule']} | {r['text']} | {classes(r)} | {r['action']} | {place.get(r['rule'], '?')}" for r in of_format)),
+                f"{r['rule']} | {r['text']} | {classes(r)} | {r['action']} | {defined_in.get(r['rule'], '?')}" for r in of_format)),
             "## 2 Rules of the reference implementation\n\nThey concern calls, recordings, scenes and meshes, not streams. "
             "Registry, section 2 distinguishes the prefixes.\n",
             table("rule | what must hold | class | remedy", (

@@ -170,8 +170,8 @@ void send_device(benchmark::State& state) {
   std::uint64_t packets = 0;
   for (auto _ : state) {
     const double t = 1e-3 * static_cast<double>(tick);
-    const Vec3 place{0.05 * std::sin(3 * t), 0.05 * std::cos(2 * t), 1e-4 * std::sin(57 * t)};
-    const auto sent = sender.encode(tick, truth.of(tick, {.position = place}, DeviceContact{place + Vec3{0, 0, 2e-3}, 500}));
+    const Vec3 position{0.05 * std::sin(3 * t), 0.05 * std::cos(2 * t), 1e-4 * std::sin(57 * t)};
+    const auto sent = sender.encode(tick, truth.of(tick, {.position = position}, DeviceContact{position + Vec3{0, 0, 2e-3}, 500}));
     if (!sent) return state.SkipWithError(sent.error().rule);
     packets += sent->size();
     ++tick;

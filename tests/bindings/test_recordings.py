@@ -126,7 +126,7 @@ def test_times_of_a_clock_with_jitter_are_resampled():
     assert len(paused.ticks) == 200 and paused.ticks[100] == 1300
 
 
-def test_arrays_are_refused_with_rule_and_place():
+def test_arrays_are_refused_with_rule_and_location():
     time = np.arange(10) / 100
     good = np.zeros((10, 3))
     cases = [(dict(time=time, poses={"cup": good[:5]}), "R-CSV-8", "poses['cup'] has shape (5, 3)"),
@@ -138,10 +138,10 @@ def test_arrays_are_refused_with_rule_and_place():
              (dict(time=np.arange(10), poses=good), "R-CSV-7", ""),  # whole numbers are nanoseconds
              (dict(time=time, poses={"a/b": good}), "R-TRC-17", ""),
              (dict(time=["a"] * 10, poses=good), "R-CSV-8", "time has")]
-    for arguments, rule, place in cases:
+    for arguments, rule, location in cases:
         with pytest.raises(tactus.Error) as refused:
             tactus.Trace.from_arrays(**arguments)
-        assert refused.value.rule == rule and place in str(refused.value), arguments
+        assert refused.value.rule == rule and location in str(refused.value), arguments
         assert "--" not in str(refused.value), refused.value  # options of the program help nobody here
     one_back = time.copy()
     one_back[5] = 0.01
@@ -226,13 +226,13 @@ def test_declared_contacts_give_recorded_forces_a_bound():
     assert packets(touched) > 0
     held = tactus.Trace.from_arrays(*arrays, {"hand": position + [0, 0, 0.01]}, contacts={"hand": ("cup", 500, "spring")})
     assert held.users["contact"]["kind"][100, 0] == 2 and (held.users["contact"]["device"][100, 0] == (position + [0, 0, 0.01])[100]).all()
-    for contacts, rule, place in [({"foot": ("cup", 500)}, "R-API-5", "no user 'foot', but 'hand'"),
+    for contacts, rule, location in [({"foot": ("cup", 500)}, "R-API-5", "no user 'foot', but 'hand'"),
                                   ({"hand": ("saucer", 500)}, "R-API-5", "no object 'saucer', but 'cup'"), ({"hand": ("cup", -1)}, "R-API-4", ""),
                                   ({"hand": 500}, "R-CSV-8", "contacts['hand'] is 500"),
                                   ({"hand": ("cup", 500, "cube")}, "R-CSV-8", "neither 'plane' nor 'spring'")]:
         with pytest.raises(tactus.Error) as refused:
             tactus.Trace.from_arrays(*arrays, contacts=contacts)
-        assert refused.value.rule == rule and place in str(refused.value), contacts
+        assert refused.value.rule == rule and location in str(refused.value), contacts
 
 
 def test_frames_of_pandas():

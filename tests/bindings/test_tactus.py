@@ -138,10 +138,10 @@ def test_an_installation_in_any_folder_finds_its_libraries(tmp_path):
 
 
 def test_a_recording_that_leaves_the_world_is_coded_with_a_warning():
-    places = np.zeros((200, 3))
-    places[:, 0] = np.interp(np.arange(200), (20, 100, 180), (0, 600, 0))
+    positions = np.zeros((200, 3))
+    positions[:, 0] = np.interp(np.arange(200), (20, 100, 180), (0, 600, 0))
     still = np.tile([1.0, 0, 0, 0], (200, 1))
-    own = tactus.Trace.from_arrays(np.arange(200) / 100, poses={"cup": (places, still), "saucer": (np.zeros((200, 3)), still)})
+    own = tactus.Trace.from_arrays(np.arange(200) / 100, poses={"cup": (positions, still), "saucer": (np.zeros((200, 3)), still)})
     with pytest.warns(RuntimeWarning, match="cup, tick .*R-API-2.*world_size"):
         stream = own.encode()
     shown = stream.to_arrays()["cup"]
@@ -393,7 +393,7 @@ def test_traces_are_arrays(traces):
 @needs_program
 def test_which_forces_a_trace_knows(traces, tmp_path):
     both = tactus.read_trace(traces / "rigid.mcap")
-    assert both.known_forces == [{"rendered", "server"}]
+    assert both.recorded_forces == [{"rendered", "server"}]
     rows = list(csv.reader(program("export", "csv", traces / "rigid.mcap").splitlines()))
     for unknown, known, seen in (("force", "server", both.users["server_force"]), ("server_force", "rendered", both.force)):
         kept = [i for i, name in enumerate(rows[0]) if f"/{unknown}_" not in name]
@@ -401,7 +401,7 @@ def test_which_forces_a_trace_knows(traces, tmp_path):
         (tmp_path / "t.csv").write_text("".join(",".join(row[i] for i in kept) + "\n" for row in rows))
         program("import", "csv", tmp_path / "t.csv", "-o", tmp_path / "t.mcap", "-q", "-f")
         trace = tactus.read_trace(tmp_path / "t.mcap")
-        assert trace.known_forces == [{known}]
+        assert trace.recorded_forces == [{known}]
         assert (trace.force == seen).all() and (trace.users["server_force"] == (seen if known == "server" else 0)).all()
 
 
@@ -468,13 +468,13 @@ def test_an_error_of_a_worker_arrives_in_its_parent(tmp_path):
 
 def test_paths_are_text_path_objects_or_bytes(tmp_path):
     recording = tactus.Trace.from_arrays(np.arange(50) / 100, poses={"cup": (np.zeros((50, 3)), np.tile([1.0, 0, 0, 0], (50, 1)))})
-    for place in (str(tmp_path / "text.mcap"), tmp_path / "object.mcap", os.fsencode(tmp_path / "\u00e9.mcap")):
-        recording.save(place)
-        assert len(tactus.read_trace(place).ticks) == 50
-        stream = tactus.encode(place)
-        saved = os.fsencode(place) + b".tct" if isinstance(place, bytes) else pathlib.Path(str(place) + ".tct")
+    for target in (str(tmp_path / "text.mcap"), tmp_path / "object.mcap", os.fsencode(tmp_path / "\u00e9.mcap")):
+        recording.save(target)
+        assert len(tactus.read_trace(target).ticks) == 50
+        stream = tactus.encode(target)
+        saved = os.fsencode(target) + b".tct" if isinstance(target, bytes) else pathlib.Path(str(target) + ".tct")
         stream.save(saved)
-        assert tactus.decode(saved).poses.shape == tactus.decode(stream).poses.shape and tactus.compare(place, saved).holds
+        assert tactus.decode(saved).poses.shape == tactus.decode(stream).poses.shape and tactus.compare(target, saved).holds
     with pytest.raises(tactus.Error) as refused:
         tactus.read_trace(b"no trace")
     assert refused.value.rule == "R-TRC-2"

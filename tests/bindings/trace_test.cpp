@@ -95,9 +95,9 @@ TEST_F(CTrace, ReportsWhatTheTraceHolds) {
 }
 
 TEST_F(CTrace, ReturnsWhichForcesOfAUserItKnows) {
-  const std::pair<KnownForces, std::uint32_t> cases[] = {{KnownForces::both, TACTUS_FORCE_RENDERED | TACTUS_FORCE_SERVER},
-                                                         {KnownForces::rendered, TACTUS_FORCE_RENDERED},
-                                                         {KnownForces::server, TACTUS_FORCE_SERVER}};
+  const std::pair<RecordedForces, std::uint32_t> cases[] = {{RecordedForces::both, TACTUS_FORCE_RENDERED | TACTUS_FORCE_SERVER},
+                                                         {RecordedForces::rendered, TACTUS_FORCE_RENDERED},
+                                                         {RecordedForces::server, TACTUS_FORCE_SERVER}};
   for (const auto& [known, given] : cases) {
     recording.info.users[1].forces = known;
     const TempFile again;

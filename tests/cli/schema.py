@@ -23,47 +23,47 @@ def has_type(value, name):
     return isinstance(value, TYPES[name])
 
 
-def differences(value, schema, root, place="$"):
+def differences(value, schema, root, path="$"):
     """Where a value is not as a schema says, in words."""
     unknown = set(schema) - KNOWN
     if unknown:
-        return [f"{place}: the schema uses {', '.join(sorted(unknown))}, which this program does not know"]
+        return [f"{path}: the schema uses {', '.join(sorted(unknown))}, which this program does not know"]
     if "$ref" in schema:
         document, name = schema["$ref"].split("#/$defs/")
         if document == "urn:tactus:parts":
             root = json.loads(PARTS.read_text(encoding="utf-8"))
-        return differences(value, root["$defs"][name], root, place)
+        return differences(value, root["$defs"][name], root, path)
     if "oneOf" in schema:
-        tried = [differences(value, one, root, place) for one in schema["oneOf"]]
-        return [] if sum(not t for t in tried) == 1 else [f"{place}: fits {sum(not t for t in tried)} of the alternatives", *min(tried, key=len)]
+        tried = [differences(value, one, root, path) for one in schema["oneOf"]]
+        return [] if sum(not t for t in tried) == 1 else [f"{path}: fits {sum(not t for t in tried)} of the alternatives", *min(tried, key=len)]
     types = schema.get("type", [])
     types = [types] if isinstance(types, str) else types
     if types and not any(has_type(value, name) for name in types):
-        return [f"{place}: {value!r} is no {' or '.join(types)}"]
+        return [f"{path}: {value!r} is no {' or '.join(types)}"]
     out = []
     if "const" in schema and value != schema["const"]:
-        out.append(f"{place}: {value!r} is not {schema['const']!r}")
+        out.append(f"{path}: {value!r} is not {schema['const']!r}")
     if "enum" in schema and value not in schema["enum"]:
-        out.append(f"{place}: {value!r} is none of {schema['enum']}")
+        out.append(f"{path}: {value!r} is none of {schema['enum']}")
     if "minimum" in schema and has_type(value, "number") and value < schema["minimum"]:
-        out.append(f"{place}: {value} is below {schema['minimum']}")
+        out.append(f"{path}: {value} is below {schema['minimum']}")
     if "maximum" in schema and has_type(value, "number") and value > schema["maximum"]:
-        out.append(f"{place}: {value} is above {schema['maximum']}")
+        out.append(f"{path}: {value} is above {schema['maximum']}")
     if isinstance(value, list):
         if not schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", len(value)):
-            out.append(f"{place}: {len(value)} items")
+            out.append(f"{path}: {len(value)} items")
         for i, item in enumerate(value):
-            out += differences(item, schema.get("items", {}), root, f"{place}[{i}]")
+            out += differences(item, schema.get("items", {}), root, f"{path}[{i}]")
     if isinstance(value, dict):
-        out += [f"{place}: lacks {name}" for name in schema.get("required", []) if name not in value]
+        out += [f"{path}: lacks {name}" for name in schema.get("required", []) if name not in value]
         other = schema.get("additionalProperties", {})
         for name, item in value.items():
             if name in schema.get("properties", {}):
-                out += differences(item, schema["properties"][name], root, f"{place}.{name}")
+                out += differences(item, schema["properties"][name], root, f"{path}.{name}")
             elif other is False:
-                out.append(f"{place}: {name} is not in the schema")
+                out.append(f"{path}: {name} is not in the schema")
             else:
-                out += differences(item, other, root, f"{place}.{name}")
+                out += differences(item, other, root, f"{path}.{name}")
     return out
 
 

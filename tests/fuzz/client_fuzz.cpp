@@ -14,8 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   spec.objects.push_back({"o", Dof::all, {}});
   spec.is_smoothed = size > 0 && data[0] / 5 % 2 == 1;
   if (size > 0 && data[0] / 10 % 2 == 1) spec.motion = {{-9000, 1 << 20, -(1 << 28)}, 1 << 18};
-  const bool knows_device = size > 0 && data[0] / 20 % 2 == 1;
-  if (knows_device) spec.driven = {{{1075200, 116053, {286331, 286331, 1}, 128, 1049}}};
+  const bool has_device = size > 0 && data[0] / 20 % 2 == 1;
+  if (has_device) spec.driven = {{{1075200, 116053, {286331, 286331, 1}, 128, 1049}}};
   const SharedScene scene = Scene::create(std::move(spec)).value();
   DevicePath path(device_scene(*scene).value());
   path.shift(0, 3);
@@ -39,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (scene->is_smoothed)
       state.smoothing_exp = static_cast<std::uint8_t>(v[0] >> 22 & 7), state.retained = static_cast<std::uint8_t>(v[0] >> 25 & 3);
     if (scene->motion) state.predictor = static_cast<Predictor>((static_cast<std::uint32_t>(v[0]) >> 27) % 3);
-    if (knows_device) state.predictor = static_cast<Predictor>(scene->motion ? v[1] & 3 : 3 * (v[1] & 1));
+    if (has_device) state.predictor = static_cast<Predictor>(scene->motion ? v[1] & 3 : 3 * (v[1] & 1));
     state.position = {v[1], v[2], v[3]};
     state.velocity = {v[4], v[5], v[6]};
     state.angular_velocity = {v[7] % kAngularVelocityLimit, v[8] % kAngularVelocityLimit, v[9] % kAngularVelocityLimit};

@@ -31,17 +31,17 @@ DeformableObject object(ByteReader& in) {
   out.name = "body";
   out.frame_period = 256u * (1 + in.u8() % 12);
   const std::size_t vertices = 4 + in.u8() % 9, inner = in.u8() % 4;
-  const auto place = [&]() -> Vec3i {
+  const auto position = [&]() -> Vec3i {
     Vec3i at{};
     for (std::int32_t& c : at) c = static_cast<std::int16_t>(in.u16()) * 4;
     return at;
   };
-  for (std::size_t v = 0; v < vertices; ++v) out.rest.push_back(place());
+  for (std::size_t v = 0; v < vertices; ++v) out.rest.push_back(position());
   for (std::size_t t = in.u8() % 16; t > 0; --t)
     out.triangles.push_back({in.u8() % static_cast<std::uint32_t>(vertices), in.u8() % static_cast<std::uint32_t>(vertices),
                              in.u8() % static_cast<std::uint32_t>(vertices)});
   ElasticBody& body = out.body.emplace();
-  for (std::size_t v = 0; v < inner; ++v) body.inner.push_back(place());
+  for (std::size_t v = 0; v < inner; ++v) body.inner.push_back(position());
   const auto all = static_cast<std::uint32_t>(vertices + inner);
   for (std::size_t m = 1 + in.u8() % 3; m > 0; --m) {
     const double young = constant(in, 1e4), poisson = in.u8() < 250 ? 0.45 - 0.003 * in.u8() : constant(in, 0.4);

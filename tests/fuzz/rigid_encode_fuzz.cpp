@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any bytes as motions, contacts, settings and places that a client looks from: what the sender takes stays inside its bounds at the
+/// Any bytes as motions, contacts, settings and viewpoints of a client: what the sender takes stays inside its bounds at the
 /// receiver, what breaks a rule is where it was last.
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ void check_bounds(const RigidTriggers& t, Receiver& receiver, std::int64_t tick,
   const Pose shown = to_pose(receiver.replica().pose(0, tick), grid.position);
   const double error = norm(shown.position - truth.pose.position), angle = angle_between(shown.rotation, truth.pose.rotation);
   require(error <= t.visual_position && angle <= t.visual_rotation);
-  // A bound of force that is finer than the grid means the nearest place on it.
+  // A bound of force that is finer than the grid means the nearest point on it.
   const bool is_nearest = error <= std::ldexp(1.0, -grid.position) && angle <= std::ldexp(8.0, -grid.rotation);
   for (const Contact& c : contacts)
     require(is_nearest || haptic_ratio(t, contact_force(c, truth.pose), contact_force(c, shown)) <= 1);
@@ -74,8 +74,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (const auto device = to_grid({{contacts[0].device, {}}, {}, {}}, tick, scene->grid))
         path->add(static_cast<std::uint64_t>(tick) + 1, *device);
     if (rule >= 192) {  // below that the client never reports
-      const Vec3 place{0.1 * in.u8(), 0, 0};
-      sender->set_viewpoints({&place, in.u8() < 250 ? 1u : 0u});
+      const Vec3 viewpoint{0.1 * in.u8(), 0, 0};
+      sender->set_viewpoints({&viewpoint, in.u8() < 250 ? 1u : 0u});
     }
     const Pose before = to_pose(receiver.replica().pose(0, tick), scene->grid.position);
     const auto packets = sender->encode(tick, {.objects = {&next, 1}, .contacts = contacts});

@@ -76,7 +76,7 @@ SharedScene scene_of(double friction, const Vec3& gravity, ElasticBody::Method m
 }
 
 /// On squares, so that no function of the library takes part.
-Vec3 place(std::int64_t tick) {
+Vec3 position(std::int64_t tick) {
   const double t = static_cast<double>(tick % 256) / 256, along = t < 0.5 ? 2 * t : 2 - 2 * t;
   const double depth = tick % 700 < 60 || tick % 700 > 600 ? -0.5 : 0.75;
   return {kCell * (0.5 + 3 * along), kCell * (0.5 + 3 * along * along), kCell * (kLayers - 1 - depth)};
@@ -93,7 +93,7 @@ bool run(const char* name, double friction, const Vec3& gravity, Method method =
   std::vector<Vec3i> shown(scene->deformables[0].rest.size());
   Fnv1a hash;
   for (std::int64_t tick = 0; tick < 1600; ++tick) {
-    const auto device = to_grid({{place(tick), {}}, {}, {}}, tick, scene->grid);
+    const auto device = to_grid({{position(tick), {}}, {}, {}}, tick, scene->grid);
     if (!device) return false;
     path.add(static_cast<std::uint64_t>(tick) + 1, *device);
     if (tick % 8 != 0) continue;

@@ -63,7 +63,7 @@ class Motion {
  public:
   Motion(const TriMesh& mesh, double noise) : shapes_(bumps(mesh, kShapes)), noise_(noise), out_(3 * mesh.vertices.size()) {}
 
-  /// Displacements of the next frame, exact in single precision: places of the grid below 2 m.
+  /// Displacements of the next frame, exact in single precision: points of the grid below 2 m.
   std::span<const float> step() {
     for (std::size_t k = 0; k < kShapes; ++k) {
       if (random_() % 32 == 0) speed_[k] += 0.3 * uniform(random_);

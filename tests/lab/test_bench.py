@@ -162,10 +162,10 @@ class World(unittest.TestCase):
 
     def test_regions_share_the_cost_and_fill_the_world(self):
         setting = self.model.Setting(servers=3, side=12)
-        places = self.numpy.array([[x + 0.5, x + 0.5] for x in range(12)])
+        sites = self.numpy.array([[x + 0.5, x + 0.5] for x in range(12)])
         weights = self.numpy.array([4.0, 4, 4] + [1] * 3 + [3] * 3 + [0] * 3)  # of 24
-        regions = self.model.Regions(setting, places, weights)
-        owner = regions.of(places)
+        regions = self.model.Regions(setting, sites, weights)
+        owner = regions.of(sites)
         self.assertEqual([weights[owner == server].sum() for server in range(3)], [8, 7, 9])
         points = self.numpy.random.default_rng(1).uniform(0, 12, (1000, 2))
         inside = [regions.distance(points, self.numpy.full(1000, server)) == 0 for server in range(3)]
@@ -176,8 +176,8 @@ class World(unittest.TestCase):
         regions = self.model.Regions(self.model.Setting(servers=2, side=10), self.numpy.array([[4.0, 1], [5, 1]]), self.numpy.ones(2))
         self.assertEqual(list(regions.high[0]), [5, 10])
         before = self.numpy.array([0, 0, 1, 1], self.numpy.int16)
-        places = self.numpy.array([[5.9, 3], [6.1, 3], [4.1, 3], [3.9, 3]])
-        self.assertEqual(list(regions.owners(places, before, 1)), [0, 1, 1, 0])
+        sites = self.numpy.array([[5.9, 3], [6.1, 3], [4.1, 3], [3.9, 3]])
+        self.assertEqual(list(regions.owners(sites, before, 1)), [0, 1, 1, 0])
 
     def test_what_a_user_holds_belongs_to_its_server(self):
         made = self.model.World(self.model.Setting(objects=2, users=1, servers=2, side=10, seed=1), dict(world_costs.COSTS))

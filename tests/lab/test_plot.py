@@ -50,7 +50,7 @@ class Documents(unittest.TestCase):
                           (json.dumps({"schema": "tactus.report/3"}), "its schema is not tactus.figure/1"),
                           (document([panel("y", ["a"], [[1]])]), "unpack"), (document([panel("y", ["a"], [["x", 1]])]), "could not convert"),
                           (document([panel("y", ["a"], 7)]), "int"), (document([{"label": "y"}]), "'lines' is missing"),
-                          (document([panel("y", ["a"], [[float("inf"), 1]])]), "no place"),
+                          (document([panel("y", ["a"], [[float("inf"), 1]])]), "no position"),
                           (document([], surface={"vertices_m": []}), "'triangles' is missing"),
                           (document([], surface={"vertices_m": [[0, 0, 0]], "triangles": [[0, 0, 1]], "stiffness_N_per_m": [1]}), "not there"),
                           (document([], surface={"vertices_m": [[0, 0, 0]], "triangles": [[0, 0, 0]], "stiffness_N_per_m": [0]}), "not above 0"),

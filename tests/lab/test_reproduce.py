@@ -104,7 +104,7 @@ class Arguments(unittest.TestCase):
             self.assertEqual(refused.exception.status, arguments.USAGE)
 
     def test_unknown_figures_and_wrong_numbers(self):
-        for words in (["fig9"], [], ["fig3.3", "--seeds", "0"], ["fig3.3", "--pace", "0"], ["fig3.3", "--grip", "tight"]):
+        for words in (["fig9"], [], ["fig3.3", "--seeds", "0"], ["fig3.3", "--duration-scale", "0"], ["fig3.3", "--grip", "tight"]):
             with self.subTest(words), self.assertRaises(arguments.Refusal):
                 parsed(*words)
 

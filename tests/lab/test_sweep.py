@@ -57,7 +57,7 @@ class Formulas(unittest.TestCase):
         self.assertTrue(math.isnan(Formula("zero / zero").value(numbers)))
         self.assertEqual(Formula("a * b.c_1 / a").names, ["a", "b.c_1", "a"])
 
-    def test_what_is_no_formula_is_said_with_its_place(self):
+    def test_what_is_no_formula_is_said_with_its_location(self):
         for text, said in (("", "a number or the name of a column is wanted at character 1"), ("a b", "an operator is wanted at character 3"),
                            ("(a", "a ) is wanted at character 3"), ("a + * b", "a number or the name of a column is wanted at character 5"),
                            ("(" * 40 + "a", "an end of the parentheses is wanted at character 33"), ("a ** 2", "a number or the name"),
@@ -126,9 +126,9 @@ class Plans(unittest.TestCase):
 class Reports(unittest.TestCase):
     def test_pointers(self):
         report = {"a": [{"b/c": 1, "d~e": "text"}], "f": None, "g": {}}
-        self.assertEqual([pointed(report, place) for place in ("/a/0/b~1c", "/a/0/d~0e", "/f")], ["1", "text", "null"])
-        for place in ("/a", "/a/1", "/a/x", "/g", "/h", "/a/0/b~1c/0"):
-            self.assertIsNone(pointed(report, place))
+        self.assertEqual([pointed(report, pointer) for pointer in ("/a/0/b~1c", "/a/0/d~0e", "/f")], ["1", "text", "null"])
+        for pointer in ("/a", "/a/1", "/a/x", "/g", "/h", "/a/0/b~1c/0"):
+            self.assertIsNone(pointed(report, pointer))
 
     def test_terminals_get_no_control_characters(self):
         self.assertEqual(printable("a\x1b[31m\nü"), "a\\x1b[31m\nü")

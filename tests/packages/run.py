@@ -44,7 +44,7 @@ def commit_time():
 def check_files(package, build, time):
     """Everybody may read what is installed, and only root may write it; nothing tells where it was built, or when."""
     modes = {tarfile.DIRTYPE: (0o755,), tarfile.REGTYPE: (0o644, 0o755), tarfile.SYMTYPE: (0o777,)}
-    places = [str(place).encode() for place in (build, SOURCE)]
+    folders = [str(folder).encode() for folder in (build, SOURCE)]
     data = subprocess.run(["dpkg-deb", "--fsys-tarfile", package], check=True, stdout=subprocess.PIPE).stdout
     with tarfile.open(fileobj=io.BytesIO(data)) as archive:
         for member in archive:
@@ -53,14 +53,14 @@ def check_files(package, build, time):
             if time is not None and member.mtime != time:
                 sys.exit(f"{package.name}: {member.name} is of {member.mtime}, and the commit of {time}")
             content = archive.extractfile(member).read() if member.isreg() else b""
-            if any(place in content for place in places):
+            if any(folder in content for folder in folders):
                 sys.exit(f"{package.name}: {member.name} names the folder in which it was built")
 
 
 def check_linked(build):
     """Before debug information is stripped, which leaves its trace in the build id."""
     for file in [*build.glob("bindings/c/*.so"), build / "cli/tactus"]:
-        if file.exists() and any(str(place).encode() in file.read_bytes() for place in (build, SOURCE)):
+        if file.exists() and any(str(folder).encode() in file.read_bytes() for folder in (build, SOURCE)):
             sys.exit(f"{file} names the folder in which it was built")
 
 

@@ -28,10 +28,10 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// Files up to a size are damaged at every byte, larger ones at so many. Receivers of deformable objects take longer to set up; streams
 /// for clients are many, and much like others to a receiver.
-struct Places {
+struct Offsets {
   std::size_t every_byte_of = 4096, sample = 400;
 };
-constexpr Places kOfDeformables{256, 20}, kOfClients{128, 40};
+constexpr Offsets kOfDeformables{256, 20}, kOfClients{128, 40};
 
 Bytes read_file(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -105,7 +105,7 @@ Bytes repaired(Bytes file) {
   return file;
 }
 
-std::vector<std::size_t> places(std::size_t size, std::uint64_t seed, const Places& which) {
+std::vector<std::size_t> offsets(std::size_t size, std::uint64_t seed, const Offsets& which) {
   std::vector<std::size_t> out(size);
   for (std::size_t i = 0; i < size; ++i) out[i] = i;
   if (size <= which.every_byte_of) return out;
@@ -118,14 +118,14 @@ std::vector<std::size_t> places(std::size_t size, std::uint64_t seed, const Plac
 class EveryVector : public ::testing::TestWithParam<const char*> {
  protected:
   template <class Damage>
-  void each_place(Damage damage) {
+  void each_offset(Damage damage) {
     std::size_t files = 0;
     for (const fs::path& path : vectors()) {
       if (path.parent_path().filename() != GetParam()) continue;
       ++files;
       const Bytes file = read_file(path);
-      const Places rigid = path.parent_path().filename() == "client" ? kOfClients : Places{};
-      for (const std::size_t at : places(file.size(), files, has_deformables(file) ? kOfDeformables : rigid)) {
+      const Offsets rigid = path.parent_path().filename() == "client" ? kOfClients : Offsets{};
+      for (const std::size_t at : offsets(file.size(), files, has_deformables(file) ? kOfDeformables : rigid)) {
         const char* wrong = damage(file, at);
         ASSERT_EQ(wrong, nullptr) << path << " byte " << at << ": " << wrong;
       }
@@ -135,11 +135,11 @@ class EveryVector : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(EveryVector, EveryPrefix) {
-  each_place([](const Bytes& file, std::size_t at) { return survive(std::span(file).first(at)); });
+  each_offset([](const Bytes& file, std::size_t at) { return survive(std::span(file).first(at)); });
 }
 
 TEST_P(EveryVector, EveryBitFlipped) {
-  each_place([](const Bytes& file, std::size_t at) -> const char* {
+  each_offset([](const Bytes& file, std::size_t at) -> const char* {
     for (unsigned bit = 0; bit < 8; ++bit) {
       Bytes damaged = file;
       damaged[at] = static_cast<std::uint8_t>(damaged[at] ^ 1u << bit);
@@ -151,7 +151,7 @@ TEST_P(EveryVector, EveryBitFlipped) {
 }
 
 TEST_P(EveryVector, EveryByteZeroOrOnes) {
-  each_place([](const Bytes& file, std::size_t at) -> const char* {
+  each_offset([](const Bytes& file, std::size_t at) -> const char* {
     for (const std::uint8_t value : {std::uint8_t{0x00}, std::uint8_t{0xff}}) {
       Bytes damaged = file;
       damaged[at] = value;

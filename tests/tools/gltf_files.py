@@ -40,8 +40,8 @@ class Scene:
             item["count"] = len(flat) // TYPES[kind]
             item["bufferView"] = self.view(struct.pack(f"<{len(flat)}{CODES[component]}", *flat))
         if sparse:
-            places, changed = sorted(sparse), [c for i in sorted(sparse) for c in sparse[i]]
-            item["sparse"] = {"count": len(places), "indices": {"bufferView": self.view(struct.pack(f"<{len(places)}H", *places)), "componentType": 5123},
+            indices, changed = sorted(sparse), [c for i in sorted(sparse) for c in sparse[i]]
+            item["sparse"] = {"count": len(indices), "indices": {"bufferView": self.view(struct.pack(f"<{len(indices)}H", *indices)), "componentType": 5123},
                               "values": {"bufferView": self.view(struct.pack(f"<{len(changed)}{CODES[component]}", *changed))}}
         return self.add("accessors", item)
 

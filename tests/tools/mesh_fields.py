@@ -129,7 +129,7 @@ def msh_bytes(version):
         if version != "4.1":
             yield "tag", size, v + 1
         for c in p:
-            yield f"place {v}", "<d", c
+            yield f"position {v}", "<d", c
     yield "text", "*", b"\n$EndNodes\n$Elements\n" + (b"" if version == "4.1" else b"2\n")
     if version == "4.1":
         for name, form, value in (("blocks", "<q", 1), ("elements", "<q", 2), ("lowest", "<q", 1), ("highest", "<q", 2), ("dimension", "<i", 3),
@@ -237,10 +237,10 @@ def main(program, is_verbose):
         wrong = [] if plain[0] == 0 else [plain]
         fields = list(text_fields(text))
         same = []
-        for place, changed in fields:
+        for field, changed in fields:
             pathlib.Path(name).write_text(changed)
             if run(program, name) == plain:
-                same.append(place)
+                same.append(field)
         wrong += [f"line {line}, word {word}" for line, word in sorted(set(same) ^ IGNORED[form])]
         table.append((form, len(fields), len(same), wrong))
     for form, fields, use, ignored in [(f, byte_fields(b), run, IGNORED_BYTES) for f, b in BYTES.items()] + [("glb", gltf_fields(), run_gltf, IGNORED_GLTF)]:

@@ -114,19 +114,19 @@ class Translator(threading.Thread):
 
     def __init__(self, to):
         super().__init__(daemon=True)
-        self.near, self.to, self.client = self.door(), ("127.0.0.1", int(to)), None
+        self.near, self.to, self.client = self.listener(), ("127.0.0.1", int(to)), None
         self.rebind()
         self.port = str(self.near.getsockname()[1])
         self.start()
 
     @staticmethod
-    def door():
+    def listener():
         out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         out.bind(("127.0.0.1", 0))
         return out
 
     def rebind(self):
-        self.far = self.door()
+        self.far = self.listener()
 
     def run(self):
         while True:

@@ -51,7 +51,7 @@ bool print_table(const Counts& counts) {
   for (std::size_t i = 0; i < 2; ++i) table.tree(indexed("TOUCHED", {i}), 1);
   table.tree("SAME_TRIANGLE", 1);
   table.tree("NEAR_TRIANGLE", 1);
-  table.tree("NEAR_PLACE", 63);
+  table.tree("NEAR_INDEX", 63);
   table.magnitude("HAPTIC");
   table.tree("SAME_VISUAL", 1);
   table.magnitude("VISUAL");

@@ -125,10 +125,10 @@ class FalconUmockdev : public testing::Testbed {
   int reap(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
     for (auto urb = urbs_.begin(); urb != urbs_.end(); ++urb) {
       if (urb->client != client || !is_done(*urb)) continue;
-      UMockdevIoctlData* place = umockdev_ioctl_data_resolve(argument, 0, sizeof(void*), nullptr);
-      if (place == nullptr) return ENODEV;
-      umockdev_ioctl_data_set_ptr(place, 0, urb->data);
-      umockdev_ioctl_data_unref(place);
+      UMockdevIoctlData* pointer = umockdev_ioctl_data_resolve(argument, 0, sizeof(void*), nullptr);
+      if (pointer == nullptr) return ENODEV;
+      umockdev_ioctl_data_set_ptr(pointer, 0, urb->data);
+      umockdev_ioctl_data_unref(pointer);
       forget(urb);
       return 0;
     }

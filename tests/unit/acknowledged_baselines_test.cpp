@@ -233,7 +233,7 @@ class Jumping {
 };
 
 TEST(AcknowledgedBaselines, WhatIsNotAcknowledgedIsSentAgain) {
-  Jumping object({.answer = 55, .loss = 0.1});
+  Jumping object({.ack_timeout = 55, .loss = 0.1});
   EXPECT_EQ(object.until_next(1000), std::nullopt) << "at its initial state";
   object.jump();
   EXPECT_EQ(object.until_next(1), 1);
@@ -266,7 +266,7 @@ bool joins(double fraction, Baseline baseline, bool waits, std::size_t others = 
   std::int64_t tick = 0;
   const auto encode = [&] { return testing::all(sender.encode(tick++, {samples})).size(); };
   encode();
-  sender.set_link({.answer = 1000, .loss = 0, .waits = waits});
+  sender.set_link({.ack_timeout = 1000, .loss = 0, .waits = waits});
   samples[1].pose.position.x = 1e-3 * fraction;
   for (std::size_t i = 0; i < others; ++i) samples[2 + i].pose.position.x = 1e-3 * fraction;
   EXPECT_EQ(encode(), 0u) << "alone it causes none";
@@ -291,7 +291,7 @@ TEST(AcknowledgedBaselines, WhatIsNearItsBoundJoinsAPacketThatGoesAnyway) {
 }
 
 TEST(AcknowledgedBaselines, WithoutLossOnlyWhatShouldHaveBeenAnsweredIsSentAgain) {
-  Jumping object({.answer = 55, .loss = 0.001});
+  Jumping object({.ack_timeout = 55, .loss = 0.001});
   object.jump();
   EXPECT_EQ(object.until_next(1), 1);
   EXPECT_EQ(object.until_next(1000), 55);
@@ -301,7 +301,7 @@ TEST(AcknowledgedBaselines, WithoutLossOnlyWhatShouldHaveBeenAnsweredIsSentAgain
 }
 
 TEST(AcknowledgedBaselines, WhatIsCopiedIsSentAgainOnlyWhenTheAnswerIsDue) {
-  Jumping object({.answer = 55, .loss = 0.1, .copies = true});
+  Jumping object({.ack_timeout = 55, .loss = 0.1, .copies = true});
   object.jump();
   EXPECT_EQ(object.until_next(1), 1);
   EXPECT_EQ(object.until_next(1000), 55);

@@ -72,7 +72,7 @@ TEST(Allocation, ASceneOfSeveralSubstreamsAllocatesNothing) {
                                 .value();
   for (const Baseline baseline : {Baseline::previous, Baseline::acknowledged}) {
     auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.baseline = baseline}}).value();
-    sender.set_link({.answer = 5, .loss = 0.1});
+    sender.set_link({.ack_timeout = 5, .loss = 0.1});
     const Interpolation interpolation = baseline == Baseline::previous ? Interpolation::none : Interpolation::playout;
     auto receiver = Receiver::create(scene, {.replica = {.interpolation = interpolation}, .limits = {}}).value();
     testing::Motion motion(1);

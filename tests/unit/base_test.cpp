@@ -91,7 +91,7 @@ TEST(Bytes, OverlongVarintsAreRefused) {
   }
 }
 
-TEST(Bytes, SubReaderKeepsItsLimitAndItsPlace) {
+TEST(Bytes, SubReaderKeepsItsLimitAndItsPosition) {
   const Bytes in{1, 2, 3, 4, 5};
   ByteReader r(in);
   r.u8();
@@ -244,16 +244,16 @@ TEST(Result, AdviceFollowsFromClassAndRule) {
 
 // ==== diagnostic ====
 
-TEST(Diagnostic, IsPlaceRuleFaultAndRemedy) {
+TEST(Diagnostic, IsLocationRuleFaultAndRemedy) {
   const Error error{Errc::invalid, "R-SRF-11", 0};
   const std::string expected =
       "R-SRF-11: an edge belongs to a third triangle; remove the surplus element or take the mesh apart there";
   EXPECT_EQ(to_string(Diagnostic{error}), expected);
-  EXPECT_EQ(place_of(Diagnostic{error}), "");
+  EXPECT_EQ(location_of(Diagnostic{error}), "");
   const Diagnostic full{
       .error = error, .file = "m.obj", .line = 3, .step = 0, .kind = "triangle", .element = 17, .detail = "'x'"};
   EXPECT_EQ(to_string(full), "m.obj:3: step 0: triangle 17: 'x': " + expected);
-  EXPECT_EQ(place_of(full), "line 3, step 0, triangle 17, 'x'");
+  EXPECT_EQ(location_of(full), "line 3, step 0, triangle 17, 'x'");
 }
 
 TEST(Diagnostic, FileThatTheSystemNamesTooStandsOnce) {

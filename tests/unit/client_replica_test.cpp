@@ -55,13 +55,13 @@ TEST(ClientReplica, WithoutInterpolationUpdatesJump) {
   EXPECT_NEAR(f.shown(100).position.x, 0.05, 1e-6);
 }
 
-TEST(ClientReplica, LinearInterpolationReachesThePredictedPlaceAfterTN) {
+TEST(ClientReplica, LinearInterpolationReachesThePredictedPositionAfterTN) {
   Feeder f(Interpolation::linear);
   f.update(0, {}, {});
   f.update(40, {}, {});                     // no interpolation before a gap is known; afterwards the gap is 40
   f.update(80, {0.03, 0, 0}, {0.5, 0, 0});  // t_N = 0.75 * 40 = 30 ticks
   EXPECT_NEAR(f.shown(80).position.x, 0, 1e-6) << "thesis eq. 3.6 starts where the object was shown";
-  EXPECT_NEAR(f.shown(95).position.x, 0.5 * (0.03 + 0.5 * 0.03), 1e-6) << "halfway to the place predicted for its end";
+  EXPECT_NEAR(f.shown(95).position.x, 0.5 * (0.03 + 0.5 * 0.03), 1e-6) << "halfway to the position predicted for its end";
   EXPECT_NEAR(f.shown(110).position.x, 0.03 + 0.5 * 0.03, 1e-6);
   EXPECT_NEAR(f.shown(150).position.x, 0.03 + 0.5 * 0.07, 1e-6) << "then dead reckoning";
 }
@@ -199,8 +199,8 @@ class PlayoutReplica {
   }
   RigidPose shown(std::int64_t tick) const { return replica_.pose(0, tick); }
   RigidPose reckoned(std::int64_t from, std::int64_t tick) const { return RigidPredictor(*scene_).pose(along(from, true), tick); }
-  RigidPose bent(std::int64_t from, std::int64_t to, std::int64_t tick) const {
-    return bend(*scene_, along(from, true), along(to, true), tick);
+  RigidPose interpolated(std::int64_t from, std::int64_t to, std::int64_t tick) const {
+    return interpolate_gap(*scene_, along(from, true), along(to, true), tick);
   }
 
  private:
@@ -208,12 +208,12 @@ class PlayoutReplica {
   Replica replica_;
 };
 
-TEST(ClientPlayout, BendsOverKnownGapsOnly) {
+TEST(ClientPlayout, InterpolatesOverKnownGapsOnly) {
   PlayoutReplica client;
   for (const Arrival& a : {Arrival{1, 400}, {2, 440}, {4, 500}, {6, 900}}) client.take(a);
   EXPECT_EQ(client.shown(420), client.reckoned(400, 420)) << "nothing is missing";
   EXPECT_EQ(client.shown(440), client.reckoned(440, 440));
-  EXPECT_EQ(client.shown(470), client.bent(440, 500, 470)) << "packet 3 is missing";
+  EXPECT_EQ(client.shown(470), client.interpolated(440, 500, 470)) << "packet 3 is missing";
   EXPECT_EQ(client.shown(600), client.reckoned(500, 600)) << "packet 5 is missing, for longer than 300 ms";
   EXPECT_EQ(client.shown(950), client.reckoned(900, 950)) << "the future is not known";
   client.take({3, 441});
@@ -262,7 +262,7 @@ TEST(ClientReplicaOrder, AReorderedUpdateIsNotShown) {
   }
 }
 
-// ==== client bend ====
+// ==== client gap interpolation ====
 
 double distance(const RigidPose& a, const RigidPose& b) {
   const unsigned exponent = scene_of(1)->grid.position;
@@ -270,18 +270,18 @@ double distance(const RigidPose& a, const RigidPose& b) {
 }
 double angle(const RigidPose& a, const RigidPose& b) { return angle_between(to_pose(a, 22).rotation, to_pose(b, 22).rotation); }
 
-TEST(Bend, MeetsBothUpdatesAndTheMotionBetween) {
+TEST(GapInterpolation, MeetsBothUpdatesAndTheMotionBetween) {
   const SharedScene scene = scene_of(1);
   const RigidPredictor predictor(*scene);
   for (const std::int64_t length : {20, 60, 300}) {
     const RigidState a = along(400, true), b = along(400 + length, true);
-    const RigidPose first = bend(*scene, a, b, 400), last = bend(*scene, a, b, 400 + length - 1);
+    const RigidPose first = interpolate_gap(*scene, a, b, 400), last = interpolate_gap(*scene, a, b, 400 + length - 1);
     EXPECT_EQ(first, (RigidPose{a.position, a.rotation}));
     EXPECT_LT(distance(last, {b.position, b.rotation}), 2e-3);
     double worst = 0, turned = 0, reckoned = 0;
     for (std::int64_t tick = 400; tick < 400 + length; ++tick) {
       const RigidState truth = along(tick, true);
-      const RigidPose shown = bend(*scene, a, b, tick), at{truth.position, truth.rotation};
+      const RigidPose shown = interpolate_gap(*scene, a, b, tick), at{truth.position, truth.rotation};
       worst = std::max(worst, distance(shown, at));
       turned = std::max(turned, angle(shown, at));
       reckoned = std::max(reckoned, distance(predictor.pose(a, tick), at));
@@ -293,13 +293,13 @@ TEST(Bend, MeetsBothUpdatesAndTheMotionBetween) {
   }
 }
 
-TEST(Bend, WithoutVelocitiesThePathIsStraight) {
+TEST(GapInterpolation, WithoutVelocitiesThePathIsStraight) {
   const SharedScene scene = scene_of(1);
   const RigidState a = along(400, false), b = along(500, false);
   const RigidPose from{a.position, a.rotation}, to{b.position, b.rotation};
   for (std::int64_t tick = 400; tick < 500; ++tick) {
     const double fraction = static_cast<double>(tick - 400) / 100;
-    const RigidPose shown = bend(*scene, a, b, tick);
+    const RigidPose shown = interpolate_gap(*scene, a, b, tick);
     EXPECT_NEAR(distance(from, shown), fraction * distance(from, to), 1e-6);
     EXPECT_NEAR(angle(from, shown), fraction * angle(from, to), 1e-6);
   }

@@ -132,13 +132,13 @@ void shuffle(std::vector<T>& items, sim::Random& random) {
 /// The same mesh with vertices, triangles and the first corners of triangles in another order.
 inline TriMesh renumbered(const TriMesh& mesh, std::uint64_t seed) {
   sim::Random random(seed);
-  std::vector<std::uint32_t> place(mesh.vertices.size());
-  std::iota(place.begin(), place.end(), 0u);
-  shuffle(place, random);
+  std::vector<std::uint32_t> target(mesh.vertices.size());
+  std::iota(target.begin(), target.end(), 0u);
+  shuffle(target, random);
   TriMesh out{std::vector<Vec3>(mesh.vertices.size()), mesh.triangles};
-  for (std::size_t i = 0; i < place.size(); ++i) out.vertices[place[i]] = mesh.vertices[i];
+  for (std::size_t i = 0; i < target.size(); ++i) out.vertices[target[i]] = mesh.vertices[i];
   for (Triangle& t : out.triangles) {
-    for (std::uint32_t& v : t) v = place[v];
+    for (std::uint32_t& v : t) v = target[v];
     std::rotate(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(random.next() % 3), t.end());
   }
   shuffle(out.triangles, random);

@@ -53,7 +53,7 @@ inline CsvMapping xyz() {
   return mapping;
 }
 
-/// What the notes of an import say, without place.
+/// What the notes of an import say, without location.
 inline std::vector<std::string> notes_of(const Imported& outcome) {
   std::vector<std::string> out;
   for (const ReadNote& note : outcome.done.notes.all())

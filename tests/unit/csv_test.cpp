@@ -137,12 +137,12 @@ TEST(Csv, ExportReadsBackToTheSameBits) {
 }
 
 TEST(Csv, AForceThatTheTraceDoesNotKnowHasNoColumns) {
-  for (const KnownForces known : {KnownForces::rendered, KnownForces::server}) {
+  for (const RecordedForces known : {RecordedForces::rendered, RecordedForces::server}) {
     Recording recording = make_recording(3);
     recording.info.users[0].forces = known;
     for (TraceFrame& frame : recording.frames) {
       UserSample& user = frame.users[0];
-      if (known == KnownForces::rendered) user.server_force = {};
+      if (known == RecordedForces::rendered) user.server_force = {};
       else user.force = user.server_force;
     }
     const TempFile trace;
@@ -153,8 +153,8 @@ TEST(Csv, AForceThatTheTraceDoesNotKnowHasNoColumns) {
     const std::string names = text.str().substr(0, text.str().find('\n'));
     for (const char axis : {'x', 'y', 'z'}) {
       const auto has = [&](const char* column) { return names.find(std::string(column) + axis) != std::string::npos; };
-      EXPECT_EQ(has("/users/left/force_"), known == KnownForces::rendered);
-      EXPECT_EQ(has("/users/left/server_force_"), known == KnownForces::server);
+      EXPECT_EQ(has("/users/left/force_"), known == RecordedForces::rendered);
+      EXPECT_EQ(has("/users/left/server_force_"), known == RecordedForces::server);
       EXPECT_TRUE(has("/users/right/force_") && has("/users/right/server_force_"));
     }
     const Imported outcome = import(text.str(), preset("tactus"));
@@ -166,7 +166,7 @@ TEST(Csv, AForceThatTheTraceDoesNotKnowHasNoColumns) {
 }
 
 TEST(Csv, AUserHasOneForceAtLeastAndAllOfIt) {
-  const auto place = [](std::string_view forces) {
+  const auto location = [](std::string_view forces) {
     std::string names = "tick,time_s", row = "0,0";
     for (const char* column : {"contact", "contact_object", "device_x", "device_y", "device_z", "point_x", "point_y", "point_z",
                                "normal_x", "normal_y", "normal_z", "stiffness"}) {
@@ -179,15 +179,15 @@ TEST(Csv, AUserHasOneForceAtLeastAndAllOfIt) {
       row += ",1";
     }
     const Imported outcome = import(names + '\n' + row + '\n', preset("tactus"));
-    return outcome.rule + (outcome.rule.empty() ? "" : ", " + place_of(outcome.error));
+    return outcome.rule + (outcome.rule.empty() ? "" : ", " + location_of(outcome.error));
   };
-  EXPECT_EQ(place("xyz"), "");
-  EXPECT_EQ(place("XYZ"), "");
-  EXPECT_EQ(place("xyzXYZ"), "");
-  EXPECT_EQ(place(""), "R-CSV-2, line 1, column /users/u/force_x");
-  EXPECT_EQ(place("xz"), "R-CSV-2, line 1, column /users/u/force_y");
-  EXPECT_EQ(place("xyzXZ"), "R-CSV-2, line 1, column /users/u/server_force_y");
-  EXPECT_EQ(place("yzXYZ"), "R-CSV-2, line 1, column /users/u/force_x");
+  EXPECT_EQ(location("xyz"), "");
+  EXPECT_EQ(location("XYZ"), "");
+  EXPECT_EQ(location("xyzXYZ"), "");
+  EXPECT_EQ(location(""), "R-CSV-2, line 1, column /users/u/force_x");
+  EXPECT_EQ(location("xz"), "R-CSV-2, line 1, column /users/u/force_y");
+  EXPECT_EQ(location("xyzXZ"), "R-CSV-2, line 1, column /users/u/server_force_y");
+  EXPECT_EQ(location("yzXYZ"), "R-CSV-2, line 1, column /users/u/force_x");
 }
 
 TEST(Csv, KinaestheticLayout) {
@@ -281,14 +281,14 @@ TEST(Csv, SemicolonsTabsDecimalCommasAndComments) {
   EXPECT_EQ(import("x;y;z\n1.000,5;2;3\n", xyz()).rule, "R-CSV-4");
   EXPECT_EQ(import("x;y;z\n1,000,5;2;3\n", xyz()).rule, "R-CSV-4");
   EXPECT_EQ(import("x;y;z\n1,2,3\n", xyz()).rule, "R-CSV-3");
-  EXPECT_EQ(place_of(import("# a\n\nx;y\n1;2\n", xyz()).error), "line 3, column z");
+  EXPECT_EQ(location_of(import("# a\n\nx;y\n1;2\n", xyz()).error), "line 3, column z");
 }
 
-TEST(Csv, MistakesAreNamedWithTheirPlace) {
-  const auto check = [](std::string_view text, std::string_view rule, std::string_view place) {
+TEST(Csv, MistakesAreNamedWithTheirLocation) {
+  const auto check = [](std::string_view text, std::string_view rule, std::string_view location) {
     const Imported outcome = import(text, xyz());
     EXPECT_EQ(outcome.rule, rule) << text;
-    EXPECT_EQ(place_of(outcome.error), place) << text;
+    EXPECT_EQ(location_of(outcome.error), location) << text;
   };
   check("", "R-CSV-1", "line 1");
   check("x,y,z\n", "R-CSV-1", "line 2");
@@ -384,12 +384,12 @@ TEST(Csv, TactusLayoutDistrustsDevices) {
       "/users/u/point_x,/users/u/point_y,/users/u/point_z,/users/u/normal_x,/users/u/normal_y,/users/u/normal_z,"
       "/users/u/stiffness,/users/u/device_qw,/users/u/device_qx,/users/u/device_qy,/users/u/device_qz,/users/u/device_buttons,"
       "/users/u/device_time_ns\n";
-  const auto check = [&](const std::string& contact, const std::string& device, std::string_view rule, std::string_view place) {
+  const auto check = [&](const std::string& contact, const std::string& device, std::string_view rule, std::string_view location) {
     const Imported outcome = import(std::string(kNames) + "0,0,63,0,0,0,1,0,0,0,0,0,0,0,0,0," + contact +
                                         ",0,0,0,0,0,0,0,0,0,0,0,0,0,0,1,100," + device + "\n",
                                     preset("tactus"));
     EXPECT_EQ(outcome.rule, rule) << device;
-    EXPECT_EQ(place_of(outcome.error), place) << device;
+    EXPECT_EQ(location_of(outcome.error), location) << device;
   };
   check("1,0", "0.6,0,0,-0.8,3,5", "", "");
   check("1,0", "1,0,0,0,-1,5", "R-CSV-4", "line 2, column /users/u/device_buttons, '-1'");
@@ -415,7 +415,7 @@ TEST(Csv, ARotationOfNoLengthIsMissing) {
   mapping.strict = true;
   const Imported outcome = import(tosses, mapping);
   EXPECT_EQ(outcome.rule, "R-CSV-4");
-  EXPECT_EQ(place_of(outcome.error), "line 3, column qw");
+  EXPECT_EQ(location_of(outcome.error), "line 3, column qw");
 }
 
 TEST(Csv, TimesLoseNothing) {

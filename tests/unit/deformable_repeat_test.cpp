@@ -63,7 +63,7 @@ using Ticks = std::vector<std::int64_t>;
 TEST(DeformableRepeat, WhatIsNotAcknowledgedGoesAgainEverLater) {
   MovedOnce sheet(Baseline::acknowledged);
   sheet.deliver(sheet.step());
-  sheet.sender->set_link({.answer = 10, .loss = 0.1});
+  sheet.sender->set_link({.ack_timeout = 10, .loss = 0.1});
   EXPECT_EQ(sheet.lose_until(100), (Ticks{1, 12, 33, 74}));
   Packet packet;
   while (packet.bytes.empty() && sheet.next_tick() < 1000) packet = sheet.step();
@@ -75,19 +75,19 @@ TEST(DeformableRepeat, WhatIsNotAcknowledgedGoesAgainEverLater) {
 TEST(DeformableRepeat, NothingGoesAgainWhereNothingIsLostOrNobodyAcknowledges) {
   MovedOnce lossless(Baseline::acknowledged);
   lossless.deliver(lossless.step());
-  lossless.sender->set_link({.answer = 10, .loss = 0});
+  lossless.sender->set_link({.ack_timeout = 10, .loss = 0});
   EXPECT_EQ(lossless.lose_until(1000), (Ticks{1}));
 
   MovedOnce chained(Baseline::previous);
   chained.deliver(chained.step());
-  chained.sender->set_link({.answer = 10, .loss = 0.1});
+  chained.sender->set_link({.ack_timeout = 10, .loss = 0.1});
   EXPECT_EQ(chained.lose_until(1000), (Ticks{1}));
 }
 
 TEST(DeformableRepeat, AnAnswerWithoutEndIsTaken) {
   MovedOnce sheet(Baseline::acknowledged);
   sheet.deliver(sheet.step());
-  sheet.sender->set_link({.answer = std::numeric_limits<std::int64_t>::max(), .loss = 1});
+  sheet.sender->set_link({.ack_timeout = std::numeric_limits<std::int64_t>::max(), .loss = 1});
   EXPECT_EQ(sheet.lose_until(500), (Ticks{1}));
 }
 

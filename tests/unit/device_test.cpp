@@ -68,12 +68,12 @@ TEST_F(Replay, GivesTheSamplesAtTheirRate) {
 }
 
 TEST_F(Replay, SlowerIsInterpolated) {
-  const auto device = open({.user = "right", .pace = 0.25});
+  const auto device = open({.user = "right", .playback_rate = 0.25});
   for (int i = 0; i < 390; ++i) EXPECT_NEAR(x(*device, i), 0.005 + 0.25e-3 * i, 1e-12);
 }
 
 TEST_F(Replay, FasterSkips) {
-  const auto device = open({.user = "right", .pace = 10});
+  const auto device = open({.user = "right", .playback_rate = 10});
   EXPECT_NEAR(x(*device, 0), 0.005, 1e-12);
   EXPECT_NEAR(x(*device, 9), 0.095, 1e-12);
 }
@@ -90,8 +90,8 @@ TEST_F(Replay, ErrorsNameTheFile) {
   EXPECT_STREQ(nobody.error().error.rule, "R-DEV-1");
   EXPECT_EQ(nobody.error().file, file.path());
   EXPECT_STREQ(open_replay_device("/nowhere/x.mcap", {}).error().error.rule, "R-TRC-1");
-  for (const double pace : {0.0, -1.0, 1001.0, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_STREQ(open_replay_device(file.path(), {.pace = pace}).error().error.rule, "R-API-4");
+  for (const double rate : {0.0, -1.0, 1001.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_STREQ(open_replay_device(file.path(), {.playback_rate = rate}).error().error.rule, "R-API-4");
 }
 
 // ==== device servo ====
@@ -154,8 +154,8 @@ TEST_F(ServoLoop, AMillionTicksAreCountedOneByOne) {
   EXPECT_EQ(device.writes, 1'000'000);
 }
 
-TEST_F(ServoLoop, ADeviceThatPacesIsWaitedFor) {
-  device.can.paces = true;
+TEST_F(ServoLoop, ADeviceWithAClockIsWaitedFor) {
+  device.can.has_clock = true;
   start();
   ASSERT_TRUE(servo->next());
   device.reading.lost = 2;

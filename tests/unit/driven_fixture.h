@@ -30,17 +30,17 @@ inline SharedScene driven_scene(std::uint8_t dof = Dof::all, const Vec3& gravity
   return builder.build().value();
 }
 
-inline RigidState device_state(const Scene& scene, std::int64_t tick, const Vec3& place, const Vec3& velocity = {}) {
-  return to_grid({{place, {}}, velocity, {}}, tick, scene.grid).value();
+inline RigidState device_state(const Scene& scene, std::int64_t tick, const Vec3& position, const Vec3& velocity = {}) {
+  return to_grid({{position, {}}, velocity, {}}, tick, scene.grid).value();
 }
 
 /// A packet of the device in every tick, which takes effect at once.
 inline std::shared_ptr<DevicePath> path_along(const SharedScene& scene, std::int64_t ticks,
-                                              const std::function<Vec3(std::int64_t)>& place) {
+                                              const std::function<Vec3(std::int64_t)>& position) {
   auto path = std::make_shared<DevicePath>(device_scene(*scene).value());
   path->shift(0, 0);
   for (std::int64_t tick = 0; tick < ticks; ++tick)
-    path->add(static_cast<std::uint64_t>(tick) + 1, device_state(*scene, tick, place(tick)));
+    path->add(static_cast<std::uint64_t>(tick) + 1, device_state(*scene, tick, position(tick)));
   return path;
 }
 

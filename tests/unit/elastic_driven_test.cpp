@@ -35,8 +35,8 @@ class OnTheSlab : public ::testing::Test {
     surface = sim::surface(testing::slab_mesh()).mesh.vertices;
     state = {};
   }
-  std::optional<ElasticTouch::Push> move(const Vec3& place, bool anew = false) {
-    return touch->move(place, anew, surface, state);
+  std::optional<ElasticTouch::Push> move(const Vec3& position, bool anew = false) {
+    return touch->move(position, anew, surface, state);
   }
 
   SharedScene scene;
@@ -124,7 +124,7 @@ TEST_F(OnTheSlab, LooksForTheNearestTriangleWhereItIsFree) {
   EXPECT_GT(push->force.z, 0) << "from below";
 }
 
-TEST_F(OnTheSlab, PlacesThatAreNoNumbersPushNothing) {
+TEST_F(OnTheSlab, PositionsThatAreNoNumbersPushNothing) {
   const double nan = std::nan("");
   EXPECT_FALSE(move({nan, 0, 0}));
   EXPECT_FALSE(move({0, nan, nan}, true));

@@ -45,8 +45,8 @@ inline SharedScene elastic_scene(ElasticPhysics physics = slab_physics(), std::u
   return builder.build().value();
 }
 
-inline RigidState device_at(const Scene& scene, std::int64_t tick, const Vec3& place, const Vec3& velocity = {}) {
-  return to_grid({{place, {}}, velocity, {}}, tick, scene.grid).value();
+inline RigidState device_at(const Scene& scene, std::int64_t tick, const Vec3& position, const Vec3& velocity = {}) {
+  return to_grid({{position, {}}, velocity, {}}, tick, scene.grid).value();
 }
 
 /// From above it presses 6 mm deep, circles, and leaves.

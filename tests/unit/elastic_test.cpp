@@ -65,7 +65,7 @@ TEST_F(Slab, RigidMotionTakesNoForce) {
   EXPECT_LT(length(forces(turned)), 1e-12);
 }
 
-/// Newton's third law, and moments about the deformed places.
+/// Newton's third law, and moments about the deformed positions.
 TEST_F(Slab, ForcesAndMomentsAddToNothing) {
   const std::vector<double> u = random_shape(rest.size(), 1e-3, 1), f = forces(u);
   Vec3 force, moment;
@@ -386,9 +386,9 @@ TEST(Elimination, HasEveryFreeVertexOnce) {
   EXPECT_EQ(found.order.size() + body.fixed.size(), vertices);
   for (std::uint32_t v = 0; v < vertices; ++v) {
     const bool is_fixed = std::ranges::binary_search(body.fixed, v);
-    ASSERT_EQ(found.place[v] == Elimination::kFixed, is_fixed);
+    ASSERT_EQ(found.order_index[v] == Elimination::kFixed, is_fixed);
     if (!is_fixed) {
-      EXPECT_EQ(found.order[found.place[v]], v);
+      EXPECT_EQ(found.order[found.order_index[v]], v);
     }
   }
 }
@@ -401,8 +401,8 @@ TEST(Elimination, RowsBeginAtTheLowestNeighbour) {
   for (const ElasticBody::Tet& tet : body.tets)
     for (const std::uint32_t a : tet)
       for (const std::uint32_t b : tet)
-        if (found.place[a] != Elimination::kFixed && found.place[b] != Elimination::kFixed)
-          lowest[found.place[a]] = std::min(lowest[found.place[a]], found.place[b]);
+        if (found.order_index[a] != Elimination::kFixed && found.order_index[b] != Elimination::kFixed)
+          lowest[found.order_index[a]] = std::min(lowest[found.order_index[a]], found.order_index[b]);
   EXPECT_EQ(found.first, lowest);
 }
 
@@ -413,7 +413,7 @@ TEST(Elimination, KeepsNeighboursClose) {
 }
 
 TEST(Elimination, CountsItsWork) {
-  const Elimination two{.order = {4, 7}, .place = {}, .first = {0, 0}};
+  const Elimination two{.order = {4, 7}, .order_index = {}, .first = {0, 0}};
   std::uint64_t sum = 0;
   for (std::uint64_t width = 0; width < 6; ++width) sum += (width + 64) * (width + 64);
   EXPECT_EQ(elastic_work(two), sum);

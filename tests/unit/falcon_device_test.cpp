@@ -56,8 +56,8 @@ class FalconDevice : public ::testing::Test {
     EXPECT_STREQ(write({1, 0, 0}).error().rule, rule);
     EXPECT_EQ(falcon_.frames.size(), frames);
   }
-  void move_to(const Vec3& place) {
-    const Triple angles = pose_at(to_native(place))->angles;
+  void move_to(const Vec3& position) {
+    const Triple angles = pose_at(to_native(position))->angles;
     for (std::size_t i = 0; i < 3; ++i) falcon_.reply.counts[i] = static_cast<std::int16_t>(std::lround(count_of(angles[i])));
   }
 
@@ -71,18 +71,18 @@ TEST_F(FalconDevice, CapabilitiesAreNumbers) {
   EXPECT_EQ(about.name, "falcon:0");
   EXPECT_EQ(about.serial, "F1");
   EXPECT_EQ(about.force_axes, 3u);
-  EXPECT_TRUE(about.paces && about.senses.buttons);
+  EXPECT_TRUE(about.has_clock && about.senses.buttons);
   for (const Vec3& corner : {about.low, about.high}) EXPECT_TRUE(pose_at(to_native(corner)));
 }
 
 TEST_F(FalconDevice, TheHandleAndItsButtonsAreRead) {
-  for (const Vec3& place : {Vec3{}, Vec3{0.03, -0.02, 0.01}, Vec3{-0.04, 0.04, -0.04}}) {
-    move_to(place);
+  for (const Vec3& position : {Vec3{}, Vec3{0.03, -0.02, 0.01}, Vec3{-0.04, 0.04, -0.04}}) {
+    move_to(position);
     falcon_.reply.buttons = 9;
     const auto reading = read();
     ASSERT_TRUE(reading);
     EXPECT_EQ(reading->state, Reading::State::valid);
-    EXPECT_LT(norm(reading->sample.position - place), 1e-4);
+    EXPECT_LT(norm(reading->sample.position - position), 1e-4);
     EXPECT_TRUE(reading->sample.is_down(0) && !reading->sample.is_down(1) && reading->sample.is_down(3));
     EXPECT_TRUE(is_valid(reading->sample));
     EXPECT_EQ(reading->taken, falcon_.now);
@@ -99,12 +99,12 @@ TEST_F(FalconDevice, OneFrameGoesOutPerTick) {
 }
 
 TEST_F(FalconDevice, TheForceThatWasWrittenIsExerted) {
-  for (const Vec3& place : {Vec3{}, Vec3{0.03, -0.02, 0.01}}) {
-    move_to(place);
+  for (const Vec3& position : {Vec3{}, Vec3{0.03, -0.02, 0.01}}) {
+    move_to(position);
     ASSERT_TRUE(read_fresh());
     for (const Vec3& force : {Vec3{3, 0, 0}, Vec3{0, 3, 0}, Vec3{0, 0, -3}, Vec3{1, -2, 0.5}}) {
       ASSERT_TRUE(write(force));
-      EXPECT_LT(norm(exerted(place) - force), 0.02) << force.x << ' ' << force.y << ' ' << force.z;
+      EXPECT_LT(norm(exerted(position) - force), 0.02) << force.x << ' ' << force.y << ' ' << force.z;
     }
   }
   ASSERT_TRUE(write({}));

@@ -318,14 +318,14 @@ TEST(FalconFrame, EveryBitFlipIsSeenOrChangesOnlyValues) {
 }
 
 TEST(FalconFrame, NoByteOutsideItsRangeIsTaken) {
-  for (std::size_t place = 1; place < kFrameBytes; ++place) {
+  for (std::size_t index = 1; index < kFrameBytes; ++index) {
     for (int value = 0; value < 256; ++value) {
       Bytes changed = frame_of(kReply);
-      changed[place] = static_cast<std::uint8_t>(value);
-      const bool fits = place == 14   ? value != '<'
-                        : place == 15 ? value == '>'
-                                      : value >= 0x41 && value <= (place == 13 ? 0xc0 : 0x50);
-      EXPECT_EQ(heard_in(changed).replies.size(), fits ? 1u : 0u) << place << ' ' << value;
+      changed[index] = static_cast<std::uint8_t>(value);
+      const bool fits = index == 14   ? value != '<'
+                        : index == 15 ? value == '>'
+                                      : value >= 0x41 && value <= (index == 13 ? 0xc0 : 0x50);
+      EXPECT_EQ(heard_in(changed).replies.size(), fits ? 1u : 0u) << index << ' ' << value;
     }
   }
 }

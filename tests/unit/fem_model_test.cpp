@@ -64,12 +64,12 @@ Eigen::VectorXd random_displacements(const FemModel& model, double size, std::ui
   return u;
 }
 
-void expect_refused(const TetMesh& mesh, const FemOptions& options, const char* rule, std::string_view place) {
+void expect_refused(const TetMesh& mesh, const FemOptions& options, const char* rule, std::string_view location) {
   const auto model = FemModel::create(mesh, options);
   ASSERT_FALSE(model) << rule;
   EXPECT_STREQ(model.error().error.rule, rule);
   EXPECT_EQ(model.error().error.code, Errc::invalid);
-  EXPECT_EQ(place_of(model.error()), place);
+  EXPECT_EQ(location_of(model.error()), location);
 }
 
 TEST(FemModel, RefusesMaterialThatIsNone) {

@@ -32,7 +32,7 @@ void run(FemModel& model, const IntegratorOptions& options, const VectorXd& f, F
   }
 }
 
-/// Places, mean place and spin of a free body.
+/// Positions, mean position and spin of a free body.
 struct Body {
   explicit Body(FemModel& m) : model(m), state(m.rest()) {}
 

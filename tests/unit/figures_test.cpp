@@ -15,7 +15,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 /// Names of the lines of a user's forces.
-Names lines_of(KnownForces known, const Vec3& rendered, const Vec3& server) {
+Names lines_of(RecordedForces known, const Vec3& rendered, const Vec3& server) {
   MotionFigure figure({.objects = {}, .users = {{.name = "hand", .forces = known}}, .source = {}, .scene = {}});
   TraceFrame frame{.objects = {}, .users = {{}}};
   frame.users[0].force = rendered;
@@ -30,10 +30,10 @@ Names lines_of(KnownForces known, const Vec3& rendered, const Vec3& server) {
 
 TEST(MotionFigure, NamesAForceAfterWhoseItIs) {
   const Vec3 some{0, 0, 1}, none;
-  EXPECT_EQ(lines_of(KnownForces::both, some, some), Names{"force"});
-  EXPECT_EQ(lines_of(KnownForces::both, some, none), (Names{"rendered", "of the server"}));
-  EXPECT_EQ(lines_of(KnownForces::rendered, some, none), Names{"rendered"});
-  EXPECT_EQ(lines_of(KnownForces::server, some, some), Names{"of the server"});
+  EXPECT_EQ(lines_of(RecordedForces::both, some, some), Names{"force"});
+  EXPECT_EQ(lines_of(RecordedForces::both, some, none), (Names{"rendered", "of the server"}));
+  EXPECT_EQ(lines_of(RecordedForces::rendered, some, none), Names{"rendered"});
+  EXPECT_EQ(lines_of(RecordedForces::server, some, some), Names{"of the server"});
 }
 
 // ==== time figure ====

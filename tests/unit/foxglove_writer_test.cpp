@@ -72,11 +72,11 @@ TEST(FoxgloveWriter, ShowsAShapeThatCameBetweenItsFrames) {
 
 TEST(FoxgloveWriter, AForceThatIsNotKnownHasNoTopic) {
   TraceInfo info = info_of();
-  for (const KnownForces known : {KnownForces::both, KnownForces::rendered, KnownForces::server}) {
+  for (const RecordedForces known : {RecordedForces::both, RecordedForces::rendered, RecordedForces::server}) {
     info.users[0].forces = known;
     const auto times = written({.rate = 20}, info);
-    EXPECT_EQ(times.contains("/users/hand/force"), known != KnownForces::server);
-    EXPECT_EQ(times.contains("/users/hand/server_force"), known != KnownForces::rendered);
+    EXPECT_EQ(times.contains("/users/hand/force"), known != RecordedForces::server);
+    EXPECT_EQ(times.contains("/users/hand/server_force"), known != RecordedForces::rendered);
   }
 }
 

@@ -45,7 +45,7 @@ std::string with(std::string_view from, std::string_view to) {
   return glb(json.replace(at, from.size(), to));
 }
 
-/// Rule and place.
+/// Rule and location.
 std::string fault(std::string bytes) {
   const auto scene = open(std::move(bytes));
   return scene ? "" : scene.error().error.rule + (' ' + scene.error().detail);
@@ -106,7 +106,7 @@ TEST(Gltf, WhatCannotBeReadIsNamed) {
   EXPECT_EQ(fault("").substr(0, 7), "R-SRF-4");
 }
 
-/// Whatever bytes are missing or changed: an error, or a mesh that can be asked for its places.
+/// Whatever bytes are missing or changed: an error, or a mesh that can be asked for its positions.
 TEST(Gltf, DamagedBytes) {
   const std::string whole = glb(std::string(kScene));
   const auto survive = [](const std::string& bytes) {

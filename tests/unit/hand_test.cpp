@@ -21,15 +21,15 @@ SceneUser still_user() {
 }
 
 TEST(MinimumJerk, StartsAndEndsAtRest) {
-  EXPECT_EQ(minimum_jerk(0).place, 0);
-  EXPECT_EQ(minimum_jerk(1).place, 1);
+  EXPECT_EQ(minimum_jerk(0).position, 0);
+  EXPECT_EQ(minimum_jerk(1).position, 1);
   EXPECT_EQ(minimum_jerk(0).slope, 0);
   EXPECT_EQ(minimum_jerk(1).slope, 0);
-  EXPECT_DOUBLE_EQ(minimum_jerk(0.5).place, 0.5);
+  EXPECT_DOUBLE_EQ(minimum_jerk(0.5).position, 0.5);
   EXPECT_DOUBLE_EQ(minimum_jerk(0.5).slope, 1.875);
   for (int i = 1; i < 100; ++i) {
     const double s = 0.01 * i;
-    EXPECT_NEAR((minimum_jerk(s + 1e-6).place - minimum_jerk(s - 1e-6).place) / 2e-6, minimum_jerk(s).slope, 1e-8);
+    EXPECT_NEAR((minimum_jerk(s + 1e-6).position - minimum_jerk(s - 1e-6).position) / 2e-6, minimum_jerk(s).slope, 1e-8);
   }
 }
 
@@ -126,11 +126,11 @@ TEST(Hand, LockedAxesOfTheDeviceDoNotMove) {
   EXPECT_NEAR(hand.position().x, 0.2, 1e-3);
 }
 
-TEST(Hand, PaceScalesTheTimeOfMovements) {
+TEST(Hand, DurationScaleScalesTheTimeOfMovements) {
   SceneUser user = still_user(), faster = user;
   user.path =
       faster.path = {{"go", PathFrame::world, {0.2, 0.4, 0.1}, 0.8, false}, {"on", PathFrame::world, {0, 0, 0}, 0.4, true}};
-  faster.pace = 0.5;
+  faster.duration_scale = 0.5;
   const auto presses = [](const SceneUser& of) {  // first and last tick with the button held, during the second movement
     Hand hand(of, Grip::firm, 1);
     std::array<int, 2> out{-1, -1};
@@ -189,13 +189,13 @@ TEST(Waypoint, SeesACubeTheSameFromEverySide) {
 TEST(Spiral, RadiusAngleAndHeightChangeEvenly) {
   const Vec3 from{0.03, 0.01, 0.02}, to{-0.04, 0.01, -0.01}, centre{0.01, 0.01, 5};
   const Spiral spiral(from, to, centre, -2);
-  EXPECT_LT(norm(spiral.at(0).place - from), 1e-15);
-  EXPECT_LT(norm(spiral.at(1).place - to), 1e-15);
+  EXPECT_LT(norm(spiral.at(0).position - from), 1e-15);
+  EXPECT_LT(norm(spiral.at(1).position - to), 1e-15);
   double turned = 0;
   constexpr int kSteps = 1000;
   for (int i = 0; i < kSteps; ++i) {
     const double fraction = (i + 0.5) / kSteps, half = 0.5 / kSteps;
-    const Vec3 before = spiral.at(fraction - half).place, after = spiral.at(fraction + half).place, now = spiral.at(fraction).place;
+    const Vec3 before = spiral.at(fraction - half).position, after = spiral.at(fraction + half).position, now = spiral.at(fraction).position;
     EXPECT_NEAR(std::hypot(now.x - centre.x, now.y - centre.y), 0.02 + 0.03 * fraction, 1e-15);
     EXPECT_NEAR(now.z, 0.02 - 0.03 * fraction, 1e-15);
     EXPECT_LT(norm(static_cast<double>(kSteps) * (after - before) - spiral.at(fraction).velocity), 1e-4) << "velocity is the slope";

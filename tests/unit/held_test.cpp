@@ -31,7 +31,7 @@ std::vector<Bytes> bytes_of(std::span<const Packet> packets) {
   return out;
 }
 
-/// Ten objects on circles at 60 Hz, and what each is to be shown as: the last good place of one that is held.
+/// Ten objects on circles at 60 Hz, and what each is to be shown as: the last good pose of one that is held.
 class Roundabout {
  public:
   static constexpr std::size_t kObjects = 10;

@@ -43,7 +43,7 @@ TEST_F(HidDevice, CapabilitiesComeFromTheDescriptor) {
   EXPECT_EQ(about.serial, "S1");
   EXPECT_EQ(about.buttons, 2u);
   EXPECT_EQ(about.force_axes, 0u);
-  EXPECT_FALSE(about.paces);
+  EXPECT_FALSE(about.has_clock);
   EXPECT_TRUE(about.senses.orientation && about.senses.buttons && !about.senses.velocity);
   for (const double reach : {about.high.x, about.high.y, about.high.z, -about.low.x, -about.low.y, -about.low.z})
     EXPECT_NEAR(reach, 1400e-4 * 0.01, 1e-12);  // 1400 times 10^-4 cm
@@ -389,8 +389,8 @@ TEST(ReportDescriptor, ValuesAreCutOutOfReports) {
     for (std::size_t bit = 8; bit < 8 * report.size(); ++bit) {
       if (std::rand() % 2 == 0) continue;
       report[bit / 8] = static_cast<std::uint8_t>(report[bit / 8] | 1u << bit % 8);
-      const std::size_t place = bit - 8 - field.bit;
-      if (place < field.size) expected |= std::int64_t{1} << place;
+      const std::size_t offset = bit - 8 - field.bit;
+      if (offset < field.size) expected |= std::int64_t{1} << offset;
     }
     if (field.logical_low < 0 && (expected >> (field.size - 1) & 1) != 0) expected -= std::int64_t{1} << field.size;
     ASSERT_EQ(value_in(report, field), expected) << +field.size << ' ' << field.bit;

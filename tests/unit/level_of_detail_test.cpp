@@ -93,7 +93,7 @@ TEST(LevelsOfDetail, RiseWithTheDistanceAndStayWhereSomebodyStandsAtABorder) {
   };
   EXPECT_EQ(at(100), 0) << "nobody has said from where the client looks";
   levels.set_viewpoints({});
-  EXPECT_EQ(at(0), kOutOfInterest) << "its places are not known";
+  EXPECT_EQ(at(0), kOutOfInterest) << "its viewpoints are not known";
   const Vec3 origin;
   levels.set_viewpoints({&origin, 1});
   EXPECT_EQ(at(0.5), 0);
@@ -107,12 +107,12 @@ TEST(LevelsOfDetail, RiseWithTheDistanceAndStayWhereSomebodyStandsAtABorder) {
   EXPECT_EQ(at(6.91), kOutOfInterest);
   EXPECT_EQ(at(6.1), kOutOfInterest);
   EXPECT_EQ(at(5.99), 4);
-  const std::array<Vec3, 2> places{origin, Vec3{6, 0, 0}};
-  levels.set_viewpoints(places);
-  EXPECT_EQ(at(5.99), 0) << "the nearest place counts";
+  const std::array<Vec3, 2> viewpoints{origin, Vec3{6, 0, 0}};
+  levels.set_viewpoints(viewpoints);
+  EXPECT_EQ(at(5.99), 0) << "the nearest viewpoint counts";
   const std::array<Vec3, 2> broken{Vec3{std::nan(""), 0, 0}, Vec3{6, 0, 0}};
   levels.set_viewpoints(broken);
-  EXPECT_EQ(at(0), 4) << "one that is no place does not";
+  EXPECT_EQ(at(0), 4) << "one that is not finite does not";
 }
 
 TEST(LevelsOfDetail, WhatIsTouchedIsSentInFullWithinReach) {
@@ -132,8 +132,8 @@ TEST(LevelsOfDetail, WhatIsTouchedIsSentInFullWithinReach) {
   }
 }
 
-/// What rests is looked at within 200 ms after the place has moved, and not at all while it stays.
-TEST(LevelsOfDetail, WhatRestsIsLookedAtWhereThePlaceMoves) {
+/// What rests is looked at within 200 ms after the viewpoint has moved, and not at all while it stays.
+TEST(LevelsOfDetail, WhatRestsIsLookedAtWhereTheViewpointMoves) {
   const SharedScene scene = world(140);
   LevelsOfDetail levels(*scene);
   HeldList held(*scene);
@@ -146,22 +146,22 @@ TEST(LevelsOfDetail, WhatRestsIsLookedAtWhereThePlaceMoves) {
   };
   scan();
   EXPECT_EQ(changed, 0u);
-  Vec3 place{0, 0, 0};
-  levels.set_viewpoints({&place, 1});
+  Vec3 viewpoint{0, 0, 0};
+  levels.set_viewpoints({&viewpoint, 1});
   scan();
   std::size_t inside = 0;
   for (std::size_t i = 0; i < 140; ++i) inside += norm(World::home(i)) <= kReach ? 1u : 0u;
   EXPECT_EQ(changed, inside) << "all were out of interest";
-  place.x = 0.01;
-  levels.set_viewpoints({&place, 1});
+  viewpoint.x = 0.01;
+  levels.set_viewpoints({&viewpoint, 1});
   changed = 0;
   scan();
   EXPECT_EQ(changed, 0u) << "less than a sixteenth of the distance of full detail";
-  place.x = 19;
-  levels.set_viewpoints({&place, 1});
+  viewpoint.x = 19;
+  levels.set_viewpoints({&viewpoint, 1});
   scan();
   EXPECT_GT(changed, 60u);
-  for (std::uint32_t i = 0; i < 140; ++i) EXPECT_EQ(levels.of(i) == kOutOfInterest, norm(World::home(i) - place) > kReach) << i;
+  for (std::uint32_t i = 0; i < 140; ++i) EXPECT_EQ(levels.of(i) == kOutOfInterest, norm(World::home(i) - viewpoint) > kReach) << i;
 }
 
 struct Judged {
@@ -326,7 +326,7 @@ Seen run(Role role, LossPolicy policy, double loss, bool looks, std::uint64_t se
   return out;
 }
 
-TEST(LevelsOfDetail, ASessionSendsWhatIsNearThePlaceThatTheClientSignals) {
+TEST(LevelsOfDetail, ASessionSendsWhatIsNearTheViewpointOfTheClient) {
   for (const LossPolicy policy : {LossPolicy::repair, LossPolicy::prompt}) {
     const Seen all = run(Role::observer, policy, 0, false, 1), near = run(Role::observer, policy, 0, true, 1);
     EXPECT_EQ(all.over, 0u);

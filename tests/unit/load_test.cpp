@@ -95,7 +95,7 @@ TEST(Loads, StayWithinTheirBoundsInAFewPackets) {
 TEST(Loads, EveryPacketThatArrivesCanBeUsedWhenBaselinesAreAcknowledged) {
   const SharedScene scene = make_scene(64);
   auto sender = Sender::create(scene, {.policy = {.key_interval = 0, .baseline = Baseline::acknowledged}}).value();
-  sender.set_link({.answer = 60, .loss = 0.3});
+  sender.set_link({.ack_timeout = 60, .loss = 0.3});
   auto receiver = Receiver::create(scene).value();
   Pushed world;
   std::mt19937_64 random(7);
@@ -130,7 +130,7 @@ TEST(Loads, AreNotSentAgainWhenEachPacketBuildsOnTheOneBefore) {
   std::size_t packets[2]{};
   for (const int linked : {0, 1}) {
     auto sender = Sender::create(make_scene()).value();
-    if (linked) sender.set_link({.answer = 30, .loss = 0.1});
+    if (linked) sender.set_link({.ack_timeout = 30, .loss = 0.1});
     Pushed world;
     for (std::int64_t tick = 0; tick < 2000; ++tick)
       for (const Packet& packet : testing::all(sender.encode(tick, world.step(tick)))) packets[linked] += packet.substream > 0;

@@ -104,7 +104,7 @@ TEST(SpringBasis, OfASheetMovesOutOfItsPlane) {
   EXPECT_LT(outside(spring_basis(object_of(mesh, 12, rim)), bulge), 0.05);
 }
 
-TEST(SpringBasis, OfVerticesInOnePlaceOrWithoutSpringsIsFinite) {
+TEST(SpringBasis, OfVerticesAtOnePositionOrWithoutSpringsIsFinite) {
   const auto largest = [](const ModeBasis& basis) {
     int out = 0;
     for (const auto entry : basis.entries) out = std::max(out, std::abs(static_cast<int>(entry)));
@@ -227,7 +227,7 @@ TEST(ClusterBasis, ExpectsTheClusterOfTheLowestNeighbour) {
   EXPECT_EQ(expected_cluster(std::vector<std::uint32_t>{1}, {}, 0), 0);
 }
 
-TEST(ClusterBasis, OfVerticesInOnePlaceOrAloneIsFinite) {
+TEST(ClusterBasis, OfVerticesAtOnePositionOrAloneIsFinite) {
   DeformableObject heap;
   heap.rest.resize(300);
   heap.cluster_basis = {64, 32, {}};

@@ -23,16 +23,16 @@ TEST(VertexHierarchy, OrderNamesEveryVertexOnceAndParentsComeFirst) {
   for (const auto& [nx, ny] : {std::pair{1U, 1U}, {7U, 3U}, {20U, 31U}}) {
     const DeformableObject mesh = object_of(testing::sheet(nx, ny));
     const VertexHierarchy h = vertex_hierarchy(mesh);
-    std::vector<std::size_t> place(mesh.rest.size(), mesh.rest.size());
+    std::vector<std::size_t> order_index(mesh.rest.size(), mesh.rest.size());
     ASSERT_EQ(h.order.size(), mesh.rest.size());
     ASSERT_EQ(h.parents[0].size(), mesh.rest.size());
-    for (std::size_t i = 0; i < h.order.size(); ++i) place[h.order[i]] = i;
-    EXPECT_EQ(std::ranges::count(place, mesh.rest.size()), 0);
+    for (std::size_t i = 0; i < h.order.size(); ++i) order_index[h.order[i]] = i;
+    EXPECT_EQ(std::ranges::count(order_index, mesh.rest.size()), 0);
     std::size_t roots = 0;
     for (std::size_t i = 0; i < h.order.size(); ++i) {
       std::int64_t sum = 0;
       for (const VertexParent& p : h.parents[0][i]) {
-        EXPECT_LT(place[p.vertex], i);
+        EXPECT_LT(order_index[p.vertex], i);
         sum += p.weight;
       }
       roots += h.parents[0][i].empty() ? 1U : 0U;
@@ -111,7 +111,7 @@ TEST(VertexHierarchy, FanWithManySpokes) {
   EXPECT_EQ(rings.triangles_around(7, 3).size(), mesh.triangles.size());
 }
 
-TEST(VertexHierarchy, ManyVerticesInOnePlace) {
+TEST(VertexHierarchy, ManyVerticesAtOnePosition) {
   constexpr std::size_t kVertices = 1U << 16;
   DeformableObject mesh;
   mesh.name = "heap";
@@ -146,7 +146,7 @@ std::string rule_of(float value, unsigned position_exp) {
   return done ? "" : done.error().rule;
 }
 
-TEST(Displacement, GoesToTheNearestPlaceAndBack) {
+TEST(Displacement, GoesToTheNearestPointAndBack) {
   const std::vector<float> metres{0.1f, -0.1f, 0, 0.5f, -0.5f, 1e-9f};
   std::array<std::array<std::int32_t, 3>, 2> grid;
   ASSERT_TRUE(to_grid(metres, 20, grid));

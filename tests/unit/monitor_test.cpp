@@ -228,8 +228,8 @@ TEST(ServiceManager, AWatchdogOfAnotherProgramAndNoManagerAreLeftAlone) {
     manager.alive(5'000'000);
     EXPECT_EQ(listener.next(), "nothing");
   }
-  for (const char* place : {"", "/nowhere/notify", "relative", "@"}) {
-    ::setenv("NOTIFY_SOCKET", place, 1);
+  for (const char* name : {"", "/nowhere/notify", "relative", "@"}) {
+    ::setenv("NOTIFY_SOCKET", name, 1);
     ServiceManager manager;
     manager.ready("x");
     manager.alive(1);

@@ -199,13 +199,13 @@ TEST(Udp, AConnectedSocketHearsItsPeerOnly) {
 TEST(Udp, WhereNobodyListensIsALossAndNoEnd) {
   std::optional<UdpSocket> server = any_port();
   UdpSocket client = UdpSocket::connect(server->own()).value();
-  const Address place = server->own();
+  const Address address = server->own();
   server.reset();
   for (int i = 0; i < 10; ++i) static_cast<void>(client.send(bytes_of("x")));
   std::array<std::uint8_t, 10> buffer{};
   EXPECT_FALSE(client.receive(buffer));
   EXPECT_TRUE(client.is_refused());
-  UdpSocket again = UdpSocket::bind(place).value();
+  UdpSocket again = UdpSocket::bind(address).value();
   while (!client.send(bytes_of("back"))) {
   }
   Address from;

@@ -173,7 +173,7 @@ class OpenHaptics : public ::testing::Test {
   }
   void open() { device = try_open().value(); }
   /// A loaded machine may stand still for longer than a device may.
-  Result<Reading> read(Time patience = 10 * 1000 * kMillisecond) { return device->read(monotonic_clock().now() + patience); }
+  Result<Reading> read(Time timeout = 10 * 1000 * kMillisecond) { return device->read(monotonic_clock().now() + timeout); }
   /// Until the runtime was given all of a force of 2 N: where the machine stands still, it fades meanwhile.
   ::testing::AssertionResult push(Servo& servo) {
     for (int i = 0; i < 5000; ++i) {
@@ -206,7 +206,7 @@ TEST_F(OpenHaptics, ReportsWhatTheRuntimeReports) {
   EXPECT_EQ(can.serial, "00-11");
   EXPECT_EQ(can.nominal_force, 3.3);
   EXPECT_EQ(can.rate, 1000);
-  EXPECT_TRUE(can.paces);
+  EXPECT_TRUE(can.has_clock);
   const Reading reading = read().value();
   EXPECT_EQ(reading.state, Reading::State::valid);
   EXPECT_NEAR(reading.sample.position.y, 0.030, 1e-12) << "away from the user";

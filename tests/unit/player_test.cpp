@@ -174,7 +174,7 @@ TEST(Player, ShowsOfEverySubstreamWhatAReceiverShows) {
 }
 
 /// A packet that the check value of its record does not betray, because it was written so.
-TEST(Player, ReportsTheFilesPlaceOfADamagedPacketAndGoesOn) {
+TEST(Player, ReportsTheFileOffsetOfADamagedPacketAndGoesOn) {
   const Recorded recorded;
   std::ostringstream out;
   auto writer = StreamFileWriter::create(out, *recorded.scene).value();

@@ -195,7 +195,7 @@ TEST(Prediction, AddsWhatTheServerKnowsToWhatYields) {
   EXPECT_NEAR(own->poses()[0].position.z, rest.z, 1e-6);
 }
 
-TEST(Prediction, PutsWhatIsFarAwayToItsPlace) {
+TEST(Prediction, SetsWhatIsFarAwayToTheServersPose) {
   const Scene scene = cube();
   const auto own = Prediction::create(scene, 0).value();
   const Pose there{{2, 1, 0.02}, {}};
@@ -222,12 +222,12 @@ TEST(Prediction, AddsTurnsAboutSeveralAxes) {
   scene.gravity = {};
   scene.floor.reset();
   const auto own = Prediction::create(scene, 0).value();
-  const Vec3 place = scene.objects[0].pose.position;
+  const Vec3 position = scene.objects[0].pose.position;
   const Quat about_x{std::cos(0.4), std::sin(0.4), 0, 0}, about_y{std::cos(0.4), 0, std::sin(0.4), 0};
   for (const Quat& server : {about_x, about_y * about_x}) {
     double before = 0.8;
     for (std::int64_t tick = 0; tick < 1500; ++tick) {
-      own->hear(0, {place, server}, tick);
+      own->hear(0, {position, server}, tick);
       own->correct(kAge);
       const double now = angle_between(own->poses()[0].rotation, server);
       ASSERT_LE(now, before + 1e-9) << "no farther than to it, in tick " << tick;

@@ -204,8 +204,8 @@ TEST(Receiver, AfterALongSilenceOnlyAKeyPacketIsTaken) {
   for (const bool again : heard) EXPECT_TRUE(again);
 }
 
-/// The place of an error counts from the front of the packet, with the number of the substream.
-TEST(Receiver, PlacesCountTheSubstreamsNumber) {
+/// The position of an error counts from the front of the packet, with the number of the substream.
+TEST(Receiver, PositionsCountTheSubstreamsNumber) {
   const SharedScene several = testing::scene_of_every_kind(kSquares), alone = testing::scene_of(1);
   auto a = Receiver::create(several).value(), b = Receiver::create(alone).value();
   const Bytes packet{7, 0, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff};

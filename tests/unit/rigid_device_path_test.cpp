@@ -26,7 +26,7 @@ struct Path : DevicePath {
   }
 };
 
-TEST(DevicePath, WithoutAPaceOrAPacketThereIsNoPlace) {
+TEST(DevicePath, WithoutATickMappingOrAPacketThereIsNoState) {
   Path path;
   EXPECT_EQ(path.x(10), -1);
   path.put(1, 5, 0.001);
@@ -36,9 +36,9 @@ TEST(DevicePath, WithoutAPaceOrAPacketThereIsNoPlace) {
   EXPECT_EQ(path.x(20), 1);
   path.shift(21, 17);
   EXPECT_EQ(path.x(21), 1) << "the device's tick does not fall";
-  EXPECT_EQ(path.place(21)->tick, 8);
-  EXPECT_EQ(path.place(25)->tick, 8);
-  EXPECT_EQ(path.place(26)->tick, 9);
+  EXPECT_EQ(path.state_at(21)->tick, 8);
+  EXPECT_EQ(path.state_at(25)->tick, 8);
+  EXPECT_EQ(path.state_at(26)->tick, 9);
 }
 
 TEST(DevicePath, PacketsActFromTheirTickOn) {
@@ -52,7 +52,11 @@ TEST(DevicePath, PacketsActFromTheirTickOn) {
   EXPECT_EQ(path.x(18), 50);
 }
 
+<<<<<<< ours
 TEST(DevicePath, ReorderedPacketsTakeTheirPlace) {
+=======
+TEST(DevicePath, OvertakenPacketsTakeTheirSlot) {
+>>>>>>> theirs
   Path path;
   path.shift(0, 0);
   path.put(1, 1, 0.001);
@@ -90,7 +94,7 @@ TEST(DevicePath, WhatWasNotAcceptedDoesNotAct) {
   EXPECT_EQ(path.x(3), 3) << "it came after all";
 }
 
-TEST(DevicePath, OlderPacesAndPacketsAreForgotten) {
+TEST(DevicePath, OlderTickMappingsAndPacketsAreForgotten) {
   Path path;
   path.shift(0, 0);
   for (std::uint64_t i = 1; i <= DevicePath::kPackets + 5; ++i) path.put(i, static_cast<std::int64_t>(i), 0.001);
@@ -100,10 +104,14 @@ TEST(DevicePath, OlderPacesAndPacketsAreForgotten) {
   EXPECT_EQ(path.x(900), -1);
   EXPECT_EQ(path.x(1001), 1);
   path.shift(1000, 500);
-  EXPECT_EQ(path.place(1500)->tick, 1500) << "a pace of the past is not taken";
+  EXPECT_EQ(path.state_at(1500)->tick, 1500) << "a tick mapping of the past is not taken";
 }
 
+<<<<<<< ours
 /// Older than all that is kept: there is no place for it.
+=======
+/// Overtaken by all that is kept: there is no slot for it.
+>>>>>>> theirs
 TEST(DevicePath, TheOldestOfAFullPathIsNotTaken) {
   Path path;
   path.shift(0, 0);

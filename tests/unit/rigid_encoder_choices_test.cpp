@@ -58,13 +58,13 @@ TEST(Acceleration, IsNothingWhereTheLastTwoTicksDoNotAgreeOrAreLongAgo) {
 
 /// By integrating a e^(-t/tau) twice in small steps.
 TEST(Acceleration, DepartureIsThatOfAFadingAcceleration) {
-  double velocity = 0, place = 0;
+  double velocity = 0, position = 0;
   constexpr double kStep = 1e-6;
   for (int i = 0; i < 100000; ++i) {
     velocity += kStep * std::exp(-(i + 0.5) * kStep / Acceleration::kFade);
-    place += kStep * velocity;
+    position += kStep * velocity;
   }
-  EXPECT_NEAR(Acceleration::departure(0.1), place, 1e-4 * place);
+  EXPECT_NEAR(Acceleration::departure(0.1), position, 1e-4 * position);
   EXPECT_EQ(Acceleration::departure(0), 0);
 }
 

@@ -39,7 +39,7 @@ inline Packet only(const Result<std::span<const Packet>>& packets) {
   return made.empty() ? Packet{} : made.front();
 }
 
-/// Smooth but eventful motion of one object from a seed: drifting sines in place and angle, with sudden kicks.
+/// Smooth but eventful motion of one object from a seed: drifting sines in position and angle, with sudden kicks.
 class Motion {
  public:
   explicit Motion(std::uint64_t seed) : random_(seed) {}

@@ -281,11 +281,11 @@ TEST(Rigid, BadCallsLeaveTheSenderAsItWas) {
   contact.normal = {1, 0, 0};  // 0.3 m is no multiple of the grid step
   contact.point = {0.02, 0, 0};
   contact.device = {0.32 - 1e-10, 0, 0};
-  EXPECT_EQ(held(contact), "") << "finer than the grid: the nearest place on it";
+  EXPECT_EQ(held(contact), "") << "finer than the grid: the nearest point on it";
 }
 
 /// 4 % of 1 mN at 630 N/m is a third of a grid step: what can be kept is the grid's rounding, in the middle of a run too.
-TEST(Rigid, AForceBoundFinerThanTheGridMeansTheNearestPlaceOnIt) {
+TEST(Rigid, AForceBoundFinerThanTheGridMeansTheNearestPointOnIt) {
   const SharedScene scene = scene_of(1);
   auto sender = Sender::create(scene, with({.heartbeat = 0, .weber_fraction = 0.04, .force_floor = 0.001})).value();
   auto receiver = Receiver::create(scene).value();

@@ -98,7 +98,7 @@ bool are_equal(const Result<std::span<const Packet>>& a, const Result<std::span<
          });
 }
 
-/// in  names  the truth says what has moved;  looks  clients have interest, and look from places of their own
+/// in  names  the truth says what has moved;  looks  clients have interest, and viewpoints of their own
 void compare(bool is_smoothed, bool names, bool looks = false) {
   const SharedScene scene = many(is_smoothed, looks);
   const SenderOptions chain = options_of(Baseline::previous, 0.3);
@@ -118,8 +118,8 @@ void compare(bool is_smoothed, bool names, bool looks = false) {
     for (Pair& pair : pairs) {
       if (looks && pair.seed > 1) {  // two of them from nowhere
         const double turn = 1e-3 * static_cast<double>(tick) + static_cast<double>(pair.seed / 2);
-        const std::vector<Vec3> places{{0.3 * std::sin(turn), 0.3 * std::cos(turn), 0}};
-        pair.sharing.set_viewpoints(places), pair.alone.set_viewpoints(places);
+        const std::vector<Vec3> viewpoints{{0.3 * std::sin(turn), 0.3 * std::cos(turn), 0}};
+        pair.sharing.set_viewpoints(viewpoints), pair.alone.set_viewpoints(viewpoints);
       }
       const auto sent = pair.sharing.encode_numbered(pair.number, tick, yard.truth(names));
       ASSERT_TRUE(are_equal(sent, pair.alone.encode_numbered(pair.number, tick, yard.truth(false)))) << tick << ' ' << pair.seed;
@@ -130,7 +130,7 @@ void compare(bool is_smoothed, bool names, bool looks = false) {
         for (const std::uint16_t sequence : pair.unheard)
           if (random() % 5 != 0) pair.sharing.acknowledge(0, sequence), pair.alone.acknowledge(0, sequence);
         pair.unheard.clear();
-        const LinkState link{.answer = 40, .loss = tick % 900 < 300 ? 0.0 : 0.2};
+        const LinkState link{.ack_timeout = 40, .loss = tick % 900 < 300 ? 0.0 : 0.2};
         pair.sharing.set_link(link), pair.alone.set_link(link);
       }
       if (pair.seed == 2 && random() % 100 == 0) pair.sharing.forget_last(0), pair.alone.forget_last(0);

@@ -294,7 +294,7 @@ TEST(RigidWorld, OdeAllocatesNothingAfterTheFirstStep) {
   dSetReallocHandler(realloc);
 }
 
-/// 200 boxes in one place touch each other 19 900 times, in several points each.
+/// 200 boxes at one position touch each other 19 900 times, in several points each.
 TEST(RigidWorld, MoreContactsThanFitAreRefused) {
   Scene scene = cube_scene();
   const SceneObject cube = scene.objects[0];

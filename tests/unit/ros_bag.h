@@ -178,7 +178,7 @@ inline Bytes stamped_pose(double ms, std::string_view frame, const Pose& value) 
 inline Bytes along_x(double x) { return pose_in("world", {{x, 0, 0}, {}}); }
 inline const std::string_view kPoseSchema = schema_name(MessageType::pose);
 
-/// Everything that is reported of a place, for people who look at a failure.
+/// Everything that is reported of a location, for people who look at a failure.
 inline std::string all_of(const std::vector<ReadNote>& notes) {
   std::string text;
   for (const ReadNote& note : notes) text += note.where + ": " + note.what + " (" + note.first + ")\n";

@@ -12,7 +12,7 @@ namespace tactus {
 namespace {
 
 using Track = SampleTrack<std::int64_t>;
-using Place = Track::Place;
+using Relation = Track::Relation;
 
 constexpr std::int64_t kMs = 1'000'000;  // [ns]
 constexpr double kNanosecond = 1e-9;
@@ -30,16 +30,16 @@ class Recorded {
       while (next < times.size() && !track.is_settled(time, next == 0 ? -1 : times[next - 1]))
         track.add({times[next], {motion(1e-9 * static_cast<double>(times[next])), {}, {}}}), ++next;
       track.move_to(time);
-      at_.push_back(track.place() == Place::nowhere ? RigidSample{} : track.moving(kNanosecond));
-      places_.push_back(track.place());
+      at_.push_back(track.relation() == Relation::nowhere ? RigidSample{} : track.moving(kNanosecond));
+      relations_.push_back(track.relation());
     }
   }
   const RigidSample& at(int ms) const { return at_[static_cast<std::size_t>(ms)]; }
-  Place place(int ms) const { return places_[static_cast<std::size_t>(ms)]; }
+  Relation relation(int ms) const { return relations_[static_cast<std::size_t>(ms)]; }
 
  private:
   std::vector<RigidSample> at_;
-  std::vector<Place> places_;
+  std::vector<Relation> relations_;
 };
 
 std::vector<std::int64_t> every(double ms, int count) {
@@ -83,7 +83,7 @@ TEST(SampleTrack, AtTheEndsOfAStretchTheVelocityIsThatOfItsOneSide) {
   EXPECT_NEAR(all.at(20).velocity.x, 0.04, 1e-9);
   EXPECT_NEAR(all.at(25).velocity.x, 0.05, 1e-9);
   EXPECT_NEAR(all.at(50).velocity.x, 0.09, 1e-9);
-  EXPECT_EQ(all.place(51), Place::after);
+  EXPECT_EQ(all.relation(51), Relation::after);
   for (const int ms : {51, 500, 999}) {
     EXPECT_NEAR(all.at(ms).pose.position.x, 0.0025, 1e-12);
     EXPECT_EQ(all.at(ms).velocity, Vec3());
@@ -149,7 +149,7 @@ TEST(SampleTrack, AReachThatIsSampledSeldomIsFollowed) {
 }
 
 /// Whatever the samples and however their times jitter: at a sample it is there, its velocity is off that of the line by no more than those
-/// beside are, and its place off the line by a quarter of what those would make of it.
+/// beside are, and its position off the line by a quarter of what those would make of it.
 TEST(SampleTrack, NoCurveLeavesWhatTheChordsBesideAllow) {
   std::uint32_t state = 1;
   const auto random = [&state] { return (state = state * 1664525u + 1013904223u) / 4294967296.0; };
@@ -210,7 +210,7 @@ TEST(SampleTrack, FramesAndEqualTimes) {
   EXPECT_NEAR(track.value().pose.position.x, 1, 1e-12);
   EXPECT_NEAR(track.span(), 10 * kMs, 1e-3);
   track.move_to(15 * kMs);  // in another frame from 20 ms on
-  EXPECT_EQ(track.place(), Place::after);
+  EXPECT_EQ(track.relation(), Relation::after);
   EXPECT_EQ(track.value().pose.position.x, 2);
   EXPECT_TRUE(track.is_near(5 * kMs));
   EXPECT_FALSE(track.is_near(4 * kMs));
@@ -224,7 +224,7 @@ TEST(SampleTrack, TwoSamplesAreJoinedUpToTheGapAndNoFarther) {
     track.add({0, {along_x(0), {}, {}}});
     track.add({apart * kMs, {along_x(apart), {}, {}}});
     track.move_to(50 * kMs);
-    EXPECT_EQ(track.place(), is_joined ? Place::between : Place::after) << apart;
+    EXPECT_EQ(track.relation(), is_joined ? Relation::between : Relation::after) << apart;
     EXPECT_NEAR(track.moving(kNanosecond).pose.position.x, is_joined ? 50 : 0, 1e-9) << apart;
     EXPECT_NEAR(track.moving(kNanosecond).velocity.x, is_joined ? 1000 : 0, 1e-6) << apart;
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(SceneBuilder, MetresGoToTheNearestPlaceOfTheGrid) {
+TEST(SceneBuilder, MetresGoToTheNearestPointOfTheGrid) {
   const double half = std::sqrt(0.5);
   const auto built = SceneBuilder(500)
                          .rigid("cube", {{0.25, -1.0, 3.4e-7}, {1.0005 * half, 0, 0, -1.0005 * half}})

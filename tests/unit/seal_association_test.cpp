@@ -293,10 +293,10 @@ TEST_F(SealKey, AMovedKeyIsWiped) {
   EXPECT_EQ(taken.name(), "lab");
   // NOLINTNEXTLINE(bugprone-use-after-move): what is left of it is the point
   EXPECT_TRUE(std::ranges::all_of(key.secret(), [](std::uint8_t byte) { return byte == 0; }));
-  alignas(Key) std::byte place[sizeof(Key)];
-  Key* gone = new (place) Key(Key::generate("lab").value());
+  alignas(Key) std::byte memory[sizeof(Key)];
+  Key* gone = new (memory) Key(Key::generate("lab").value());
   gone->~Key();
-  EXPECT_TRUE(std::ranges::all_of(place, [](std::byte byte) { return byte == std::byte{0}; }));
+  EXPECT_TRUE(std::ranges::all_of(memory, [](std::byte byte) { return byte == std::byte{0}; }));
 }
 
 }  // namespace

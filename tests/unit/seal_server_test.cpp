@@ -284,7 +284,7 @@ TEST(SealServer, HasRoomForSoManyPeers) {
   EXPECT_EQ(crowd.server.peers(), 4u);
 }
 
-TEST(SealServer, HandshakesWithoutTheKeyTakeNoPlaceForLong) {
+TEST(SealServer, HandshakesWithoutTheKeyTakeNoSlotForLong) {
   Crowd crowd(10, {.peers = 4, .handshakes = 3}, false);
   crowd.run(1'000'000);
   EXPECT_EQ(crowd.most_handshakes, 3u);

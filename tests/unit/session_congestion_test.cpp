@@ -115,7 +115,7 @@ TEST(Congestion, NarrowsAfterEachCalmPeriod) {
 }
 
 /// How many calm periods pass until a step narrower.
-unsigned patience(Ticks& run) {
+unsigned calm_needed(Ticks& run) {
   const double before = run.congestion.bound_scale();
   unsigned out = 0;
   for (; run.congestion.bound_scale() == before && out < 1000; ++out) run.periods(1, 0, 0);
@@ -126,12 +126,12 @@ TEST(Congestion, AStepThatWasTooEarlyMakesItWaitLonger) {
   Ticks run;
   run.periods(4, 1, 500);
   for (const unsigned expected : {1u, 2u, 4u, 8u, 16u, 32u, 64u, 64u}) {
-    EXPECT_EQ(patience(run), expected);
+    EXPECT_EQ(calm_needed(run), expected);
     run.periods(1, 1, 500);
   }
-  EXPECT_EQ(patience(run), 64u);
-  EXPECT_EQ(patience(run), 64u) << "the one before still counts";
-  EXPECT_EQ(patience(run), 1u) << "it was not too early";
+  EXPECT_EQ(calm_needed(run), 64u);
+  EXPECT_EQ(calm_needed(run), 64u) << "the one before still counts";
+  EXPECT_EQ(calm_needed(run), 1u) << "it was not too early";
 }
 
 TEST(Congestion, ANewEpochBeginsAtItsBounds) {
@@ -251,12 +251,12 @@ struct Sent {
 TEST(Resends, WhatIsLostGoesAgainOnce) {
   Resends resends(0);
   const Sent sent;
-  std::vector<std::uint16_t> places{Resends::kNone};
-  for (std::uint64_t n = 1; n <= 5; ++n) places.push_back(sent.keep(resends, n + 100, n, n * kMillisecond));
+  std::vector<std::uint16_t> slots{Resends::kNone};
+  for (std::uint64_t n = 1; n <= 5; ++n) slots.push_back(sent.keep(resends, n + 100, n, n * kMillisecond));
   EXPECT_EQ(resends.next(10 * kMillisecond, kShapes), nullptr);
   EXPECT_FALSE(resends.due());
-  resends.lost(places[3], 103, 50 * kMillisecond, 1);
-  resends.lost(places[4], 999, 50 * kMillisecond, 1);  // another datagram had this place before
+  resends.lost(slots[3], 103, 50 * kMillisecond, 1);
+  resends.lost(slots[4], 999, 50 * kMillisecond, 1);  // another datagram had this slot before
   resends.lost(Resends::kNone, 101, 50 * kMillisecond, 1);
   EXPECT_EQ(resends.due(), 50 * kMillisecond);
   const auto* copy = resends.next(50 * kMillisecond, kShapes);
@@ -272,8 +272,8 @@ TEST(Resends, WhatIsLostGoesAgainOnce) {
 
 TEST(Resends, TheSecondCopyGoesTenMillisecondsLater) {
   Resends resends(0);
-  const std::uint16_t place = Sent().keep(resends, 1, 1, 0);
-  resends.lost(place, 1, 50 * kMillisecond, 2);
+  const std::uint16_t slot = Sent().keep(resends, 1, 1, 0);
+  resends.lost(slot, 1, 50 * kMillisecond, 2);
   resends.sent(*resends.next(52 * kMillisecond, kShapes), 2, 52 * kMillisecond);
   EXPECT_EQ(resends.next(62 * kMillisecond - 1, kShapes), nullptr);
   EXPECT_EQ(resends.due(), 62 * kMillisecond);
@@ -284,26 +284,26 @@ TEST(Resends, TheSecondCopyGoesTenMillisecondsLater) {
 /// A lost copy goes again; one that arrives ends it, whichever of the datagrams that brought it.
 TEST(Resends, TheDatagramOfTheLastCopyTakesOver) {
   Resends resends(0);
-  const std::uint16_t place = Sent().keep(resends, 1, 1, 0);
-  resends.lost(place, 1, 20 * kMillisecond, 2);
-  EXPECT_EQ(resends.sent(*resends.next(20 * kMillisecond, kShapes), 2, 20 * kMillisecond), place);
+  const std::uint16_t slot = Sent().keep(resends, 1, 1, 0);
+  resends.lost(slot, 1, 20 * kMillisecond, 2);
+  EXPECT_EQ(resends.sent(*resends.next(20 * kMillisecond, kShapes), 2, 20 * kMillisecond), slot);
   resends.sent(*resends.next(30 * kMillisecond, kShapes), 3, 30 * kMillisecond);
-  resends.lost(place, 2, 40 * kMillisecond, 2);  // the other one is still on its way
+  resends.lost(slot, 2, 40 * kMillisecond, 2);  // the other one is still on its way
   EXPECT_EQ(resends.next(40 * kMillisecond, kShapes), nullptr);
-  resends.lost(place, 3, 50 * kMillisecond, 2);
+  resends.lost(slot, 3, 50 * kMillisecond, 2);
   ASSERT_NE(resends.next(50 * kMillisecond, kShapes), nullptr);
   resends.sent(*resends.next(50 * kMillisecond, kShapes), 4, 50 * kMillisecond);
-  resends.arrived(place, 2);  // late, not lost
+  resends.arrived(slot, 2);  // late, not lost
   EXPECT_EQ(resends.next(60 * kMillisecond, kShapes), nullptr);
-  resends.lost(place, 4, 70 * kMillisecond, 2);
+  resends.lost(slot, 4, 70 * kMillisecond, 2);
   EXPECT_EQ(resends.next(70 * kMillisecond, kShapes), nullptr);
   EXPECT_FALSE(resends.due());
 }
 
 TEST(Resends, OldPacketsDoNotGo) {
   Resends resends(0);
-  const std::uint16_t place = Sent().keep(resends, 1, 1, 0);
-  resends.lost(place, 1, 50 * kMillisecond, 2);
+  const std::uint16_t slot = Sent().keep(resends, 1, 1, 0);
+  resends.lost(slot, 1, 50 * kMillisecond, 2);
   Resends late = resends;
   EXPECT_NE(resends.next(100 * kMillisecond, kShapes), nullptr) << "it arrives 120 ms after the first";
   EXPECT_EQ(late.next(100 * kMillisecond + 1, kShapes), nullptr);
@@ -315,8 +315,8 @@ TEST(Resends, OldPacketsDoNotGo) {
 TEST(Resends, KnowWhenTheRigidObjectsMustBeginAnew) {
   Resends resends(0);
   const Sent rigid(40, 0);
-  const std::uint16_t place = rigid.keep(resends, 1, 1, 0);
-  resends.lost(place, 1, 300 * kMillisecond, 2);
+  const std::uint16_t slot = rigid.keep(resends, 1, 1, 0);
+  resends.lost(slot, 1, 300 * kMillisecond, 2);
   Resends late = resends, renewed = resends;
   EXPECT_NE(resends.next(380 * kMillisecond, kShapes), nullptr);
   EXPECT_FALSE(resends.is_broken());
@@ -336,8 +336,8 @@ TEST(Resends, KnowWhenTheRigidObjectsMustBeginAnew) {
 TEST(Resends, AllPacketsOfADatagramGoTheOldestFirst) {
   Resends resends(0);
   const Sent sent;
-  const std::array places{sent.keep(resends, 9, 12, 0), sent.keep(resends, 9, 11, 0), sent.keep(resends, 8, 10, 0)};
-  for (const std::uint16_t place : places) resends.lost(place, 9, kMillisecond, 1);
+  const std::array slots{sent.keep(resends, 9, 12, 0), sent.keep(resends, 9, 11, 0), sent.keep(resends, 8, 10, 0)};
+  for (const std::uint16_t slot : slots) resends.lost(slot, 9, kMillisecond, 1);
   for (const std::uint64_t number : {11u, 12u}) {
     const auto* copy = resends.next(kMillisecond, kShapes);
     ASSERT_NE(copy, nullptr);
@@ -371,15 +371,15 @@ TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
   Sent large(1150);
   const std::uint64_t before = testing::allocated_bytes();
   std::uint64_t number = 0, now = 0, copies = 0;
-  std::array<std::uint16_t, 100> places{};
+  std::array<std::uint16_t, 100> slots{};
   for (int i = 0; i < 20'000; ++i) {
     now += random() % 5'000;
     ++number;
     std::ranges::fill(large.bytes, static_cast<std::uint8_t>(number));
-    places[number % 100] = large.keep(resends, number, number, now);
+    slots[number % 100] = large.keep(resends, number, number, now);
     if (random() % 2) {
       const std::uint64_t lost = number - std::min<std::uint64_t>(number - 1, random() % 100);
-      resends.lost(places[lost % 100], lost, now, 1 + random() % 2);
+      resends.lost(slots[lost % 100], lost, now, 1 + random() % 2);
     }
     while (const auto* copy = random() % 4 ? resends.next(now, kShapes) : nullptr) {
       ASSERT_GT(copy->number + 57, number) << "56 have room";

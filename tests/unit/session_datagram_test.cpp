@@ -144,7 +144,7 @@ Bytes of_all_parts(Direction direction) {
   EXPECT_TRUE(writer.add(Acknowledgement{65000, 17, kLarge}));
   if (direction == Direction::down) {
     EXPECT_TRUE(writer.add(ClockPart{1'000'000'000'000}));
-    EXPECT_TRUE(writer.add(PacePart{4'294'967'295, -(std::int64_t{1} << 33)}));
+    EXPECT_TRUE(writer.add(TickMappingPart{4'294'967'295, -(std::int64_t{1} << 33)}));
     EXPECT_TRUE(writer.add(PiecePart{70000, payload}));
     EXPECT_TRUE(writer.add(PiecePart{0, {}}));
     EXPECT_TRUE(writer.add(PacketPart{300, payload}));
@@ -190,9 +190,9 @@ TEST(Datagram, PartsAreReadAsWritten) {
   EXPECT_EQ(std::get<ClockPart>(got[1]).time, 1'000'000'000'000u);
   EXPECT_EQ(std::get<PiecePart>(got[3]).index, 70000u);
   EXPECT_TRUE(std::get<PiecePart>(got[4]).bytes.empty());
-  EXPECT_EQ(std::get<PacePart>(got[2]).from, 4'294'967'295);
-  EXPECT_EQ(std::get<PacePart>(got[2]).offset, -(std::int64_t{1} << 33));
-  EXPECT_EQ(rule_of(up, Direction::down), "R-SES-3") << "buttons are no pace";
+  EXPECT_EQ(std::get<TickMappingPart>(got[2]).from, 4'294'967'295);
+  EXPECT_EQ(std::get<TickMappingPart>(got[2]).offset, -(std::int64_t{1} << 33));
+  EXPECT_EQ(rule_of(up, Direction::down), "R-SES-3") << "buttons are no tick mapping";
   EXPECT_EQ(rule_of(down, Direction::up), "R-SES-5");
 }
 

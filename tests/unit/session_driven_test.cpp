@@ -40,7 +40,7 @@ struct DeviceEnds {
     EXPECT_TRUE(client.submit(now, tick, truth.of(tick, sample, {})));
     send(client, up, 20 * kMillisecond);
     hear(server, up, Direction::up);
-    if (const auto change = pace.step(tick, tick - 20)) {  // known to both at once
+    if (const auto change = mapping.step(tick, tick - 20)) {  // known to both at once
       server.path->shift(change->from, change->offset);
       client.path->shift(change->from, change->offset);
     }
@@ -59,14 +59,14 @@ struct DeviceEnds {
     for (; !from.empty() && from.begin()->first <= now; from.erase(from.begin())) {
       const auto read = read_datagram(from.begin()->second, direction).value();
       const auto heard = to.handle(now, std::get<Numbered>(read), [](const Part&, const auto&) { return Result<void>(); });
-      if (heard && heard->tick && direction == Direction::up) pace.heard(*heard->tick);
+      if (heard && heard->tick && direction == Direction::up) mapping.heard(*heard->tick);
     }
   }
 
   double loss;
   Exchange client{Direction::up, kEpoch, 0}, server{Direction::down, kEpoch, 0};
   DeviceTruth truth{1000, false};
-  DevicePace pace{1000};
+  DeviceTickMapping mapping{1000};
   std::multimap<std::uint64_t, Bytes> up, down;
   std::mt19937_64 random{3};
   std::uint64_t now = kMillisecond;
@@ -91,12 +91,12 @@ TEST(Driven, BothEndsKnowTheSamePath) {
       ends.loss = loss;
     }
     const std::uint64_t late = ends.server.traffic().packets_refused;
-    EXPECT_GT(late, 0u) << "a jitter of 4 ms is more than the pace begins with";
+    EXPECT_GT(late, 0u) << "a jitter of 4 ms is more than the mapping begins with";
     EXPECT_LT(late, 20u) << "it has got slower";
   }
 }
 
-TEST(Driven, APlaceIsLookedUpAgainOnceThePastHasChanged) {
+TEST(Driven, APositionIsLookedUpAgainOnceThePastHasChanged) {
   const SharedScene scene = testing::driven_scene();
   DevicePath path(device_scene(*scene).value());
   path.shift(0, 0);
@@ -175,7 +175,7 @@ TEST(Driven, WherePacketsAreLostNothingIsDriven) {
 }
 
 /// Who joins a server that has been running for a minute is at its tick from the first packet on.
-TEST(Driven, APaceBeginsAtTheTickOfTheServer) {
+TEST(Driven, ATickMappingBeginsAtTheTickOfTheServer) {
   auto server = SessionServer::create(testing::driven_scene(), {.clients = 1}, 7, kMillisecond).value();
   auto client = SessionClient::create({.role = Role::participant}).value();
   std::uint64_t now = kMillisecond;

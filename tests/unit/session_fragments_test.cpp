@@ -133,8 +133,8 @@ TEST(Fragments, FourPacketsAtATimeAndTheOldestGoesFirst) {
     for (const Cut& cut : cuts) expect_kept(cut.give(fragments, index));
   const Cut older(5, 2 * kFragmentSize), newer(30, 2 * kFragmentSize);
   expect_nothing(older.give(fragments, 0));
-  expect_nothing(older.give(fragments, 1));  // there was no place for it
-  expect_kept(newer.give(fragments, 0));     // in the place of number 10, substream 0
+  expect_nothing(older.give(fragments, 1));  // there was no slot for it
+  expect_kept(newer.give(fragments, 0));     // in the slot of number 10, substream 0
   expect_nothing(cuts[0].give(fragments, 0));
   expect_nothing(cuts[0].give(fragments, 2));
   expect_whole(cuts[2].give(fragments, 2), cuts[2]);
@@ -164,7 +164,7 @@ TEST(Fragments, APacketThatWasDroppedNeverComesBack) {
   EXPECT_GT(gone.size(), 1000u);
 }
 
-TEST(Fragments, APlaceThatIsUsedAgainForgetsAll) {
+TEST(Fragments, ASlotThatIsUsedAgainForgetsAll) {
   Fragments fragments(3 * kFragmentSize);
   for (std::uint64_t n = 10; n < 200; n += 10) expect_kept(Cut(n, 3 * kFragmentSize).give(fragments, n / 10 % 3));
   const Cut last(300, 2 * kFragmentSize + 5);
@@ -193,7 +193,7 @@ TEST(Fragments, NothingIsAllocatedWhenEveryPacketFitsNorLater) {
   EXPECT_EQ(testing::allocated_bytes(), made);
 }
 
-/// A scene whose largest packet fills one fragment exactly needs no place for fragments.
+/// A scene whose largest packet fills one fragment exactly needs no slot for fragments.
 TEST(Fragments, WhereNoPacketNeedsThemTheyAreRefused) {
   const Bytes bytes(kFragmentSize);
   for (const std::size_t largest : {std::size_t{0}, std::size_t{1}, kFragmentSize}) {

@@ -16,11 +16,11 @@
 namespace tactus::sim {
 namespace {
 
-using Place = Sighting::Place;
+using CapturePoint = Sighting::CapturePoint;
 
 /// What was seen, in order.
 struct Seen {
-  Place place;
+  CapturePoint point;
   std::size_t user;
   std::uint64_t time;
   std::vector<std::uint8_t> bytes;
@@ -41,7 +41,7 @@ std::unique_ptr<Session> session(std::size_t users, std::uint64_t seed) {
   const LinkOptions link{.seed = seed, .delay = 5'000, .jitter = 3'000, .loss = 0.05, .duplicates = 0.05};
   NetworkOptions options{.uplink = link, .downlink = link};
   options.observer = [to = out.get()](const Sighting& s) {
-    to->seen.push_back({s.place, s.user, s.time, {s.datagram.begin(), s.datagram.end()}});
+    to->seen.push_back({s.point, s.user, s.time, {s.datagram.begin(), s.datagram.end()}});
   };
   out->network = SessionNetwork::create(one_body(), users, {}, options).value();
   out->before = out->seen.size();
@@ -63,14 +63,14 @@ TEST(SessionNetwork, AnObserverSeesWhatTheLinksCount) {
   const std::vector<Seen>& seen = two->seen;
   const SessionNetwork& network = *two->network;
   ASSERT_GT(two->before, 0u);
-  EXPECT_EQ(seen.front().place, Place::client_sends) << "the join";
-  std::map<std::pair<Place, std::size_t>, std::uint64_t> count;
-  for (std::size_t i = two->before; i < seen.size(); ++i) ++count[{seen[i].place, seen[i].user}];
+  EXPECT_EQ(seen.front().point, CapturePoint::client_sends) << "the join";
+  std::map<std::pair<CapturePoint, std::size_t>, std::uint64_t> count;
+  for (std::size_t i = two->before; i < seen.size(); ++i) ++count[{seen[i].point, seen[i].user}];
   for (std::size_t user = 0; user < 2; ++user) {
-    EXPECT_EQ((count[{Place::client_sends, user}]), network.uplink(user).sent);
-    EXPECT_EQ((count[{Place::server_hears, user}]), network.uplink(user).arrived);
-    EXPECT_EQ((count[{Place::server_sends, user}]), network.downlink(user).sent);
-    EXPECT_EQ((count[{Place::client_hears, user}]), network.downlink(user).arrived);
+    EXPECT_EQ((count[{CapturePoint::client_sends, user}]), network.uplink(user).sent);
+    EXPECT_EQ((count[{CapturePoint::server_hears, user}]), network.uplink(user).arrived);
+    EXPECT_EQ((count[{CapturePoint::server_sends, user}]), network.downlink(user).sent);
+    EXPECT_EQ((count[{CapturePoint::client_hears, user}]), network.downlink(user).arrived);
     EXPECT_GT(network.uplink(user).lost + network.downlink(user).lost, 0u);
   }
   for (std::size_t i = 1; i < seen.size(); ++i) ASSERT_LE(seen[i - 1].time, seen[i].time);

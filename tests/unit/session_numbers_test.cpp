@@ -147,7 +147,7 @@ TEST(SentNumbers, FewNumbersSayLittleOfLosses) {
 
 // ==== session received numbers ====
 
-constexpr ReceivedNumbers::Patience kPatience{10'000, 10'000};
+constexpr ReceivedNumbers::AckDelay kAckDelay{10'000, 10'000};
 
 TEST(ReceivedNumbers, FourteenBitsStandForOneNumber) {
   ReceivedNumbers received;
@@ -191,19 +191,19 @@ TEST(ReceivedNumbers, AcknowledgementsReportWhatWasAccepted) {
   ReceivedNumbers received;
   EXPECT_FALSE(received.can_acknowledge());
   EXPECT_FALSE(received.due());
-  received.accept(1, 1000, AckTiming::soon, kPatience);
-  received.accept(2, 2000, AckTiming::soon, kPatience);
-  received.accept(5, 5000, AckTiming::never, kPatience);
-  received.accept(4, 6000, AckTiming::soon, kPatience);
+  received.accept(1, 1000, AckTiming::soon, kAckDelay);
+  received.accept(2, 2000, AckTiming::soon, kAckDelay);
+  received.accept(5, 5000, AckTiming::never, kAckDelay);
+  received.accept(4, 6000, AckTiming::soon, kAckDelay);
   EXPECT_EQ(received.due(), 11000u) << "10 ms after the first";
   const Acknowledgement ack = received.acknowledge(7616);
   EXPECT_EQ(ack.newest, 5);
   EXPECT_EQ(ack.held, 163) << "2616 us since 5 came, in units of 16";
   EXPECT_EQ(ack.missing, 0b0010u) << "4, 2 and 1 were accepted, 3 was not, and there is none below 1";
   EXPECT_FALSE(received.due());
-  received.accept(6, 8000, AckTiming::never, kPatience);
+  received.accept(6, 8000, AckTiming::never, kAckDelay);
   EXPECT_FALSE(received.due()) << "an acknowledgement is not ack-eliciting";
-  received.accept(7, 8000, AckTiming::now, kPatience);
+  received.accept(7, 8000, AckTiming::now, kAckDelay);
   EXPECT_EQ(received.due(), 8000u);
   EXPECT_EQ(received.acknowledge(8000 + 2'000'000).held, Acknowledgement::kNoTiming);
   EXPECT_EQ(received.acknowledge(8000 + 16 * 65534).held, 65534);
@@ -213,7 +213,7 @@ TEST(ReceivedNumbers, WhatIsNotAcceptedIsMissing) {
   ReceivedNumbers received;
   for (std::uint64_t number = 1; number <= 200; ++number) {
     received.receive(number);
-    if (number % 5 != 0) received.accept(number, 1, AckTiming::soon, kPatience);
+    if (number % 5 != 0) received.accept(number, 1, AckTiming::soon, kAckDelay);
   }
   const Acknowledgement ack = received.acknowledge(1);
   EXPECT_EQ(ack.newest, 199);
@@ -225,21 +225,21 @@ TEST(ReceivedNumbers, AfterThirtyTwoTheAcknowledgementIsDueAtOnce) {
   ReceivedNumbers numbers;
   for (std::uint64_t n = 1; n <= 31; ++n) {
     numbers.receive(n);
-    numbers.accept(n, 100 * n, AckTiming::soon, kPatience);
+    numbers.accept(n, 100 * n, AckTiming::soon, kAckDelay);
   }
   EXPECT_EQ(numbers.due(), 100 + 10'000);
-  numbers.accept(32, 3200, AckTiming::never, kPatience);
+  numbers.accept(32, 3200, AckTiming::never, kAckDelay);
   EXPECT_EQ(numbers.due(), 3200) << "though it is not ack-eliciting: nobody else reports it";
   numbers.acknowledge(3400);
-  numbers.accept(33, 3500, AckTiming::soon, kPatience);
+  numbers.accept(33, 3500, AckTiming::soon, kAckDelay);
   EXPECT_EQ(numbers.due(), 3500 + 10'000);
 }
 
 /// What is not as the other end may believe is reported soon.
 TEST(ReceivedNumbers, WhileAllIsWellAnAcknowledgementMayWait) {
-  constexpr ReceivedNumbers::Patience patience{10'000, 100'000};
+  constexpr ReceivedNumbers::AckDelay delay{10'000, 100'000};
   ReceivedNumbers numbers;
-  const auto accept = [&](std::uint64_t number, std::uint64_t now) { numbers.accept(number, now, AckTiming::soon, patience); };
+  const auto accept = [&](std::uint64_t number, std::uint64_t now) { numbers.accept(number, now, AckTiming::soon, delay); };
   accept(1, 1000);
   accept(2, 5000);
   EXPECT_EQ(numbers.due(), 101'000);

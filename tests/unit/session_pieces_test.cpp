@@ -40,7 +40,7 @@ std::uint64_t send_all(PieceSender& sender) {
   return count;
 }
 
-/// As many in flight as LinePace permits, and none beyond what the client takes.
+/// As many in flight as LinePacer permits, and none beyond what the client takes.
 TEST(PieceSender, SendsAWindowAndThenWaits) {
   PieceSender sender = sender_of(Bytes(400 * 1024));
   EXPECT_EQ(send_all(sender), 16u);
@@ -121,17 +121,17 @@ TEST(PieceSender, PiecesAreTheDeclaration) {
   }
 }
 
-// ==== line pace ====
+// ==== line pacer ====
 
 /// Datagrams over a line that brings one each `line` us, without a queue of others, and answers each 10 ms; what comes when the queue is
 /// full is lost.
 struct PacedLine {
   PacedLine(std::uint64_t line_us, std::uint64_t delay_us, std::uint64_t queue_us, std::uint64_t least_gap = 0)
-      : pace(least_gap), line(line_us), queue(queue_us), delay(delay_us) {}
+      : pacer(least_gap), line(line_us), queue(queue_us), delay(delay_us) {}
 
   void run(std::uint64_t until) {
     for (; now < until; now += 50) {
-      while (now >= next && in_flight < pace.window()) send();
+      while (now >= next && in_flight < pacer.window()) send();
       for (; !arrivals.empty() && arrivals.begin()->first <= now; arrivals.erase(arrivals.begin())) {
         newest = arrivals.begin()->second;
         newest_at = arrivals.begin()->first;
@@ -145,10 +145,10 @@ struct PacedLine {
   void send() {
     const std::uint64_t waits = std::max(free_at, now) - now;
     worst = std::max(worst, waits);
-    pace.sent(++number, now);
+    pacer.sent(++number, now);
     sent_at[number] = now;
     ++in_flight;
-    next = std::max(next + 2000, now) - 2000 + pace.gap();
+    next = std::max(next + 2000, now) - 2000 + pacer.gap();
     if (waits > queue) {
       --in_flight;
       ++lost;
@@ -158,17 +158,17 @@ struct PacedLine {
     arrivals.emplace(free_at + delay, number);
   }
   void report() {
-    for (; unreported > 0; --unreported, --in_flight, ++came) pace.arrived();
+    for (; unreported > 0; --unreported, --in_flight, ++came) pacer.arrived();
     const auto arrived = static_cast<std::int64_t>(newest_at + delay);
     const std::int64_t sample = arrived - static_cast<std::int64_t>(sent_at[newest]);
     trip.variation = trip.smoothed == 0 ? sample / 2 : trip.variation + (std::abs(trip.smoothed - sample) - trip.variation) / 4;
     trip.smoothed = trip.smoothed == 0 ? sample : trip.smoothed + (sample - trip.smoothed) / 8;
     trip.least = trip.least == 0 ? sample : std::min(trip.least, sample);
-    pace.feedback({newest, number, arrived - sample, arrived}, trip, now);
+    pacer.feedback({newest, number, arrived - sample, arrived}, trip, now);
     answer_at = 0;
   }
 
-  LinePace pace;
+  LinePacer pacer;
   std::uint64_t line, queue, delay;
   RoundTrip trip;
   std::map<std::uint64_t, std::uint64_t> arrivals, sent_at;
@@ -176,7 +176,7 @@ struct PacedLine {
   std::uint64_t in_flight = 0, unreported = 0, came = 0, lost = 0, worst = 0;
 };
 
-TEST(LinePace, FillsALineAfterARoundTripAndLeavesItsQueueShort) {
+TEST(LinePacer, FillsALineAfterARoundTripAndLeavesItsQueueShort) {
   for (const std::uint64_t line : {150u, 900u, 9'000u})
     for (const std::uint64_t delay : {1'000u, 20'000u, 100'000u}) {
       PacedLine test(line, delay, 100'000);
@@ -192,7 +192,7 @@ TEST(LinePace, FillsALineAfterARoundTripAndLeavesItsQueueShort) {
     }
 }
 
-TEST(LinePace, KeepsToTheRateThatIsStated) {
+TEST(LinePacer, KeepsToTheRateThatIsStated) {
   PacedLine test(100, 10'000, 100'000, 4'000);
   test.run(test.now + 4'000'000);
   EXPECT_LE(test.came, 1001u + 16);
@@ -200,7 +200,7 @@ TEST(LinePace, KeepsToTheRateThatIsStated) {
 }
 
 /// A line that becomes three times as slow is followed, and so is one that becomes as fast again.
-TEST(LinePace, FollowsALineThatChanges) {
+TEST(LinePacer, FollowsALineThatChanges) {
   PacedLine test(800, 20'000, 200'000);
   test.run(test.now + 1'000'000);
   test.line = 2400;
@@ -215,33 +215,33 @@ TEST(LinePace, FollowsALineThatChanges) {
   EXPECT_GT(test.came - came, 1000u);
 }
 
-TEST(LinePace, AfterATimeOutFewGoUntilSomethingIsHeard) {
-  LinePace pace(0);
-  EXPECT_EQ(pace.window(), 16u);
-  EXPECT_EQ(pace.gap(), 500u);
-  pace.sent(1, 1'000'000);
-  pace.timed_out();
-  EXPECT_EQ(pace.window(), 4u);
-  pace.feedback({1, 1, 1'000'000, 1'900'000}, {900'000, 450'000, 900'000}, 1'910'000);
-  EXPECT_EQ(pace.window(), 16u);
+TEST(LinePacer, AfterATimeOutFewGoUntilSomethingIsHeard) {
+  LinePacer pacer(0);
+  EXPECT_EQ(pacer.window(), 16u);
+  EXPECT_EQ(pacer.gap(), 500u);
+  pacer.sent(1, 1'000'000);
+  pacer.timed_out();
+  EXPECT_EQ(pacer.window(), 4u);
+  pacer.feedback({1, 1, 1'000'000, 1'900'000}, {900'000, 450'000, 900'000}, 1'910'000);
+  EXPECT_EQ(pacer.window(), 16u);
 }
 
-/// Of acknowledgements that lie about times or come out of order nothing follows but a pace between the fastest and none.
-TEST(LinePace, AcknowledgementsThatLieChangeOnlyTheOwnPace) {
+/// Of acknowledgements that lie about times or come out of order nothing follows but a spacing between the fastest and none.
+TEST(LinePacer, AcknowledgementsThatLieChangeOnlyTheOwnPacing) {
   std::mt19937_64 random(5);
-  LinePace pace(0);
-  pace.sent(1, 1);
+  LinePacer pacer(0);
+  pacer.sent(1, 1);
   std::uint64_t number = 1;
   for (std::uint64_t now = 2'000'000; now < 3'000'000; now += 100) {
     number += random() % 40;
-    for (auto i = random() % 60; i > 0; --i) pace.arrived();
+    for (auto i = random() % 60; i > 0; --i) pacer.arrived();
     const auto arrived = static_cast<std::int64_t>(now - random() % 1'100'000);
     const auto sample = static_cast<std::int64_t>(random() % 2'000'000);
-    pace.feedback({number, number + random() % 9, arrived - sample, arrived}, {sample, sample / 2, std::min<std::int64_t>(sample, 7)},
+    pacer.feedback({number, number + random() % 9, arrived - sample, arrived}, {sample, sample / 2, std::min<std::int64_t>(sample, 7)},
               now);
-    ASSERT_GE(pace.gap(), 80u);
-    ASSERT_GE(pace.window(), 4u);
-    ASSERT_LE(pace.window(), 800u);
+    ASSERT_GE(pacer.gap(), 80u);
+    ASSERT_GE(pacer.window(), 4u);
+    ASSERT_LE(pacer.window(), 800u);
   }
 }
 

@@ -99,7 +99,7 @@ TEST(RepairedExchange, TheLastPacketBeforeAPauseGoesAgain) {
   ends.lose();
   const auto due = ends.server->due();
   ASSERT_TRUE(due);
-  EXPECT_EQ(*due, ends.server->eliciting_at() + ends.server->patience());
+  EXPECT_EQ(*due, ends.server->eliciting_at() + ends.server->ack_timeout());
   ends.now = *due - 1;
   EXPECT_TRUE(ends.drain(*ends.server).empty());
   ends.now = *due;
@@ -135,7 +135,7 @@ TEST(RepairedExchange, AClientThatAsksGetsAKeyPacketOnceInTheTimeOfAnAnswer) {
   EXPECT_TRUE(is_key());
   ends.server->want_key(ends.now);
   EXPECT_FALSE(is_key()) << "the answer to the first is on its way";
-  ends.now += ends.server->patience();
+  ends.now += ends.server->ack_timeout();
   ends.server->want_key(ends.now);
   EXPECT_TRUE(is_key());
   ends.expect_same();

@@ -86,7 +86,7 @@ TEST(SessionReturn, AnAddressThatChangesKeepsTheSession) {
   }
 }
 
-TEST(SessionReturn, AProgramThatCrashedComesBackToItsPlace) {
+TEST(SessionReturn, AProgramThatCrashedComesBackToItsSlot) {
   Visit visit;
   visit.run(1000);
   const std::uint64_t token = visit.client().status().token;

@@ -339,7 +339,7 @@ TEST(ServerConnection, ATimeoutThatIsDueHasSomethingToSay) {
   EXPECT_LT(wakes, 20'000u);
 }
 
-TEST(ServerConnection, TheNextClientInItsPlaceBeginsWithCleanCounters) {
+TEST(ServerConnection, TheNextClientInItsSlotBeginsWithCleanCounters) {
   Desk desk;
   desk.go_live();
   RigidSample body;

@@ -158,7 +158,7 @@ TEST(SessionServer, AClientThatDiesIsForgotten) {
   EXPECT_LT(world.server->status(0).traffic.datagrams_sent, 300u) << "without acknowledgements little is sent";
   world.add({}, {}, {});
   for (int i = 0; i < 100; ++i) world.step();
-  EXPECT_EQ(world.ends[1].client->status().state, SessionState::live) << "its place is free";
+  EXPECT_EQ(world.ends[1].client->status().state, SessionState::live) << "its slot is free";
 }
 
 /// Against the truth of the links, whatever the client's clock says; 5 ms of jitter each way, uniform: 2.5 ms on average.
@@ -265,18 +265,18 @@ TEST(SessionServer, KnowsWhereADeviceIs) {
             {.seed = 2, .delay = 20'000});
   double worst = 0;
   std::uint64_t samples = 0;
-  const auto place = [](std::uint64_t now) {
+  const auto position = [](std::uint64_t now) {
     const double t = 1e-6 * static_cast<double>(now);
     return Vec3{0.1 * std::sin(3 * t), 0.05 * std::cos(2 * t), 0};
   };
   for (int i = 0; i < 1000; ++i) {
-    const DeviceSample sample{.position = place(world.now), .buttons = i / 100 % 2 == 0 ? 0u : 1u};
+    const DeviceSample sample{.position = position(world.now), .buttons = i / 100 % 2 == 0 ? 0u : 1u};
     ASSERT_TRUE(world.ends[0].client->submit(world.now, sample, {}));
     world.step([&](std::int64_t tick) { return show.at(tick); });
     const auto device = world.server->device(0, world.now);
     if (!device || i < 50) continue;
     ++samples;
-    worst = std::max(worst, norm(device->position - place(world.now - 30'000)));
+    worst = std::max(worst, norm(device->position - position(world.now - 30'000)));
     if (i % 100 > 10) {
       EXPECT_EQ(device->buttons, i / 100 % 2 == 0 ? 0u : 1u) << i;
     }
@@ -317,7 +317,7 @@ class Stranger {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// 10^6 in all: while a client joins, while it gets the declaration, and while it is live. It has the only place.
+/// 10^6 in all: while a client joins, while it gets the declaration, and while it is live. It has the only slot.
 TEST(SessionServer, HostileDatagramsChangeNothing) {
   constexpr std::uint64_t kRuns = 333'334, kStrangers = 1000;
   Show show;
@@ -336,14 +336,14 @@ TEST(SessionServer, HostileDatagramsChangeNothing) {
       }
       world.drain();
     }
-    const bool has_place = during != SessionState::closed;  // else the first whole join would take it
+    const bool has_slot = during != SessionState::closed;  // else the first whole join would take it
     const Traffic before = world.server->status(0).traffic;
     allocated = testing::allocated_bytes();
     for (std::uint64_t run = 0; run < kRuns; ++run, ++attacks) {
-      const auto bytes = stranger.next(overheard, has_place);
+      const auto bytes = stranger.next(overheard, has_slot);
       const std::uint64_t peer = 100 + attacks % kStrangers;
       const bool taken = world.server->handle_datagram(world.now, peer, bytes).has_value();
-      EXPECT_TRUE(!taken || has_place);
+      EXPECT_TRUE(!taken || has_slot);
       while (const auto datagram = world.server->poll_datagram(world.now)) {
         if (datagram->peer != peer) continue;
         largest = std::max<std::uint64_t>(largest, datagram->bytes.size());
@@ -401,8 +401,8 @@ TEST(SessionServer, NoForceFromStatesThatTheRateHeldBack) {
   SessionClient& client = *world.add({.role = Role::participant}, {.delay = 5'000}, {.delay = 5'000}).client;
   int old_states = 0, rendered = 0;
   for (int i = 0; i < 1500; ++i) {
-    const Vec3 place{1e-3 * i, 0, 0};
-    ASSERT_TRUE(client.submit(world.now, {.position = place}, DeviceContact{place + Vec3{0, 0, 1e-3}, 500}));
+    const Vec3 position{1e-3 * i, 0, 0};
+    ASSERT_TRUE(client.submit(world.now, {.position = position}, DeviceContact{position + Vec3{0, 0, 1e-3}, 500}));
     world.step([&](std::int64_t tick) { return show.at(tick); });
     if (client.status().state != SessionState::live || i < 300) continue;
     const std::int64_t age = world.tick - client.receiver()->tick(0);  // [10 ms]
@@ -428,7 +428,7 @@ TEST(SessionServer, OneBadObjectDoesNotStopTheOthers) {
   SessionWorld world(scene, options);
   world.add({}, {.seed = 1, .delay = 20'000}, {.seed = 2, .delay = 20'000});
   std::vector<RigidSample> samples(kBodies);
-  const auto place = [](std::uint32_t i, std::int64_t tick) {
+  const auto position = [](std::uint32_t i, std::int64_t tick) {
     const double a = (1 + 0.001 * i) * static_cast<double>(tick) / 60;
     return Vec3{std::sin(a), std::cos(a) + 0.01 * i, 0.1 * i};
   };
@@ -439,7 +439,7 @@ TEST(SessionServer, OneBadObjectDoesNotStopTheOthers) {
     world.step([&](std::int64_t now) {
       for (std::uint32_t i = 0; i < kBodies; ++i) {
         const double w = 1 + 0.001 * i, a = w * static_cast<double>(now) / 60;
-        samples[i].pose.position = place(i, now);
+        samples[i].pose.position = position(i, now);
         samples[i].velocity = {w * std::cos(a), -w * std::sin(a), 0};
       }
       if (is_bad(now)) samples[kBad].pose.position.z = now < 600 ? std::nan("") : -600;
@@ -454,7 +454,7 @@ TEST(SessionServer, OneBadObjectDoesNotStopTheOthers) {
       if (shown < 0 || end.client->receiver() == nullptr) continue;
       for (std::uint32_t i = 0; i < kBodies; ++i) {
         const Vec3 at = to_pose(end.client->receiver()->replica().pose(i, shown), scene->grid.position).position;
-        const Vec3 wanted = i == kBad && is_bad(shown) ? place(i, 299) : place(i, shown);
+        const Vec3 wanted = i == kBad && is_bad(shown) ? position(i, 299) : position(i, shown);
         ++frames;
         if (norm(at - wanted) > 0.005) ++(i == kBad ? bad_over : over);
       }

@@ -117,8 +117,8 @@ class Standstill {
     }
   }
   void look() {
-    const Vec3 place{0.01 * std::sin(3e-6 * static_cast<double>(time_)), 0, 0};
-    ASSERT_TRUE(client_->submit(client_now(), {.position = place}, DeviceContact{place, 500}));
+    const Vec3 position{0.01 * std::sin(3e-6 * static_cast<double>(time_)), 0, 0};
+    ASSERT_TRUE(client_->submit(client_now(), {.position = position}, DeviceContact{position, 500}));
     const std::int64_t shown = client_->shown_tick(client_now());
     fraction_ = client_->force_fraction(client_now());
     most_ = std::max(most_, fraction_);

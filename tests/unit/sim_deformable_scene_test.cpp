@@ -135,7 +135,7 @@ struct Broken {
   const char* key;
 };
 
-TEST(DeformableScene, EveryRuleNamesItsPlace) {
+TEST(DeformableScene, EveryRuleNamesItsLocation) {
   const std::string body = kHead + kSlab;
   const auto with = [&](const std::string& key, const std::string& line) {
     const auto at = body.find(key);
@@ -161,7 +161,7 @@ TEST(DeformableScene, EveryRuleNamesItsPlace) {
       {"empty box", body + "[[deformable.fixed]]\nlow = [9, 9, 9]\nhigh = [10, 10, 10]\n", "R-SCN-6", 12, "deformable.fixed"},
       {"empty region", body + "[[deformable.region]]\npoint = [9, 0, 0]\nnormal = [1, 0, 0]\n", "R-SCN-6", 12,
        "deformable.region"},
-      {"region without a place", body + "[[deformable.region]]\nyoung = 1\n", "R-SCN-4", 12, "deformable.region.point"},
+      {"region without a point", body + "[[deformable.region]]\nyoung = 1\n", "R-SCN-4", 12, "deformable.region.point"},
       {"two of one name", body + kSlab, "R-SCN-7", 12, "deformable.name"},
       {"centre without turns",
        body + "[touch]\nstiffness = 1\nfriction = 0\nlift_stiffness = 1\n[[user]]\nname = \"u\"\nobject = \"slab\"\n"

@@ -33,9 +33,9 @@ Scene slab_scene(std::uint32_t rate, const Vec3& start) {
   return parse_scene(text, "slab.toml").value();
 }
 
-std::vector<DeviceSample> device_at(const Vec3& place) {
+std::vector<DeviceSample> device_at(const Vec3& position) {
   std::vector<DeviceSample> samples(1);
-  samples[0].position = place;
+  samples[0].position = position;
   return samples;
 }
 
@@ -195,18 +195,18 @@ TEST(DeformableSimulation, StandsBesideABoxAndAOneDimensionalObject) {
   ASSERT_TRUE(simulation);
   ASSERT_EQ(simulation->info().objects.size(), 2u);
   EXPECT_EQ(simulation->info().objects[1].name, "surface");
-  auto place = [](double x, double z) {
+  auto position = [](double x, double z) {
     std::vector<DeviceSample> samples(1);
     samples[0].position = {x, 0, z};
     return samples;
   };
-  ASSERT_TRUE(simulation->step(place(-0.03, 0.02)));
-  ASSERT_TRUE(simulation->step(place(-0.0195, 0.02)));
+  ASSERT_TRUE(simulation->step(position(-0.03, 0.02)));
+  ASSERT_TRUE(simulation->step(position(-0.0195, 0.02)));
   EXPECT_EQ(simulation->frame().users[0].contact.object, 0u) << "the box";
   EXPECT_EQ(simulation->frame().objects[1].pose.position.x, 0.13);
-  ASSERT_TRUE(simulation->step(place(-0.0195, 0.2)));
+  ASSERT_TRUE(simulation->step(position(-0.0195, 0.2)));
   EXPECT_EQ(simulation->frame().users[0].contact.kind, ContactKind::none);
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(simulation->step(place(0.132, 0.2)));
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(simulation->step(position(0.132, 0.2)));
   EXPECT_EQ(simulation->frame().users[0].contact.object, 1u);
   EXPECT_GT(simulation->frame().objects[1].pose.position.x, 0.1301);
   EXPECT_FALSE(simulation->frame().users[0].surface_contact);

@@ -101,8 +101,8 @@ const std::vector<Broken>& broken() {
       {"an unknown method", kHead + "[compensation]\nmethod = \"magic\"\n" + kCube, "R-SCN-7", 5, "compensation.method"},
       {"unknown grip", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "grip = \"iron\"\n", "R-SCN-7", 18,
        "user.grip"},
-      {"a pace that never ends", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "pace = 0\n", "R-SCN-6", 18,
-       "user.pace"},
+      {"a duration that never ends", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "duration_scale = 0\n", "R-SCN-6", 18,
+       "user.duration_scale"},
       {"half a filter step", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "[user.device]\nfilter = 2.5\n",
        "R-SCN-5", 19, "user.device.filter"},
       {"instant movement",
@@ -112,7 +112,7 @@ const std::vector<Broken>& broken() {
   return cases;
 }
 
-TEST(Scene, EveryRuleNamesItsPlace) {
+TEST(Scene, EveryRuleNamesItsLocation) {
   std::set<std::string> rules;
   for (const Broken& c : broken()) {
     const auto scene = parse_scene(c.text, "t.toml");
@@ -145,13 +145,13 @@ TEST(Scene, CompensationIsThereWhenAskedFor) {
   EXPECT_TRUE(sends_loads(asked));
 }
 
-TEST(Scene, PaceAndTremorAreThoseOfEveryHand) {
-  Scene scene = parse_scene(kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "pace = 2\n", "t.toml").value();
-  EXPECT_EQ(scene.users[0].pace, 2);
+TEST(Scene, DurationScaleAndTremorAreThoseOfEveryHand) {
+  Scene scene = parse_scene(kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "duration_scale = 2\n", "t.toml").value();
+  EXPECT_EQ(scene.users[0].duration_scale, 2);
   EXPECT_EQ(scene.duration, 1) << "a file says how long its scene lasts";
-  set_pace(scene, 0.5);
+  scale_durations(scene, 0.5);
   set_tremor(scene, 4e-4);
-  EXPECT_EQ(scene.users[0].pace, 0.5 * 2);
+  EXPECT_EQ(scene.users[0].duration_scale, 0.5 * 2);
   EXPECT_EQ(scene.users[0].tremor, 4e-4);
   EXPECT_EQ(scene.duration, 0.5);
 }

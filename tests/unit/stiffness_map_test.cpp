@@ -116,7 +116,7 @@ std::pair<double, double> pressed(const SceneDeformable& object, const SurfaceCo
   return {1 / unit.dot(Eigen::MatrixXd(K).inverse() * unit), 1 / inverse_mass};
 }
 
-/// At a low rate an object tolerates little more than its own stiffness at that place; at a high one, four times the mass over T^2.
+/// At a low rate an object tolerates little more than its own stiffness at that point; at a high one, four times the mass over T^2.
 TEST(CriticalStiffness, IsThatOfEquation438WhereTheObjectIsPressed) {
   SceneDeformable object = slab(4, 3);
   const StiffnessMap map = stiffness_map(object).value();
@@ -146,7 +146,7 @@ TEST(CriticalStiffness, OfAFreeObjectIsThatOfItsMass) {
   EXPECT_LT(limit, 4 * whole / 10 / (period * period));
 }
 
-TEST(CriticalStiffness, OfAFixedPlaceIsInfinite) {
+TEST(CriticalStiffness, OfAFixedPointIsInfinite) {
   SceneDeformable object = slab(4, 3);
   object.fixed.clear();
   for (std::uint32_t v = 0; v < object.mesh.vertices.size(); ++v) object.fixed.push_back(v);

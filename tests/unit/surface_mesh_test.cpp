@@ -125,12 +125,12 @@ TEST(SurfaceFile, PolygonsAreCutWhereTheyCanBe) {
   }
 }
 
-/// An OBJ of one polygon in the plane that x and y span in `place`.
-std::string polygon_of(const std::vector<std::array<double, 2>>& corners, const std::function<Vec3(double, double)>& place) {
+/// An OBJ of one polygon in the plane that x and y span in `plane`.
+std::string polygon_of(const std::vector<std::array<double, 2>>& corners, const std::function<Vec3(double, double)>& plane) {
   std::ostringstream text;
   text << std::setprecision(17);
   for (const auto& [x, y] : corners) {
-    const Vec3 p = place(x, y);
+    const Vec3 p = plane(x, y);
     text << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
   }
   text << 'f';
@@ -167,7 +167,7 @@ TEST(SurfaceFile, PolygonsThatAreNotConvexAreCutByTheirEars) {
       {"a hole, with a bridge to it", {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}}, 12},
       {"star", star, area_of(star)},
       {"spiral", spiral, area_of(spiral)}};
-  const std::function<Vec3(double, double)> places[] = {[](double x, double y) {
+  const std::function<Vec3(double, double)> planes[] = {[](double x, double y) {
                                                           return Vec3{x, y, 7};
                                                         },
                                                         [](double x, double y) {
@@ -183,11 +183,11 @@ TEST(SurfaceFile, PolygonsThatAreNotConvexAreCutByTheirEars) {
                                                           return Vec3{x + 1e5, y - 2e5, 0.5 * x - y};
                                                         }};
   for (const Case& c : cases)
-    for (const auto& place : places) {
-      const auto file = parse_surface(polygon_of(c.corners, place), ".obj");
+    for (const auto& plane : planes) {
+      const auto file = parse_surface(polygon_of(c.corners, plane), ".obj");
       ASSERT_TRUE(file) << c.name << ": " << to_string(file.error());
       EXPECT_EQ(file->mesh.triangles.size(), c.corners.size() - 2) << c.name;
-      const Vec3 along = cross(place(1, 0) - place(0, 0), place(0, 1) - place(0, 0));
+      const Vec3 along = cross(plane(1, 0) - plane(0, 0), plane(0, 1) - plane(0, 0));
       double area = 0, sign = 0;
       for (const auto& [i, j, k] : file->mesh.triangles) {
         const auto& v = file->mesh.vertices;
@@ -200,7 +200,7 @@ TEST(SurfaceFile, PolygonsThatAreNotConvexAreCutByTheirEars) {
     }
 }
 
-TEST(SurfaceFile, APolygonThatCrossesItselfIsNamedWithThePlace) {
+TEST(SurfaceFile, APolygonThatCrossesItselfIsNamedWithThePosition) {
   expect_broken(parse_surface("v 0 0 0\nv 2 0 0\nv 0 2 0\nv 3 2 0\nf 1 2 3 4\n", ".obj"), "R-SRF-6",
                 "its edges 2 to 3 and 4 to 1 cross");
   expect_broken(parse_surface("OFF\n5 1 0\n0 3 0\n2 -3 0\n-3 1 0\n3 1 0\n-2 -3 0\n5 0 1 2 3 4\n", ".off"), "R-SRF-6",
@@ -258,7 +258,7 @@ TEST(SurfaceFile, WhatIsAnnouncedMustBeThere) {
 
 TEST(SurfaceFile, WhatCannotBeUsedIsNamed) {
   std::string flat = binary_stl();
-  std::memcpy(flat.data() + 84 + 12, flat.data() + 84 + 24, 12);  // two corners of facet 0 in one place
+  std::memcpy(flat.data() + 84 + 12, flat.data() + 84 + 24, 12);  // two corners of facet 0 at one position
   expect_broken(parse_surface(flat, ".stl"), "R-SRF-10", "corners (0 1.25 0) (0 1.25 0) (1 0 0)");
   const auto index = parse_surface(replaced(kPly, "3 0 3 2", "3 0 3 9"), ".ply");
   ASSERT_FALSE(index);

@@ -34,7 +34,7 @@ TEST(SurfaceScene, TheObjectsFrameIsAtItsCentreOfMass) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(to_world(object.pose, object.surface.vertices[i]).z, i == 3 ? 3.04 : 3.0, 1e-6);
 }
 
-TEST(SurfaceScene, BadFilesNameFilePlaceRuleAndRemedy) {
+TEST(SurfaceScene, BadFilesNameFileLocationRuleAndRemedy) {
   const TempFolder folder;
   folder.write("corner.obj", kCorner);
   folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");

@@ -111,9 +111,9 @@ std::string binary_msh(bool legacy, bool big) {
   put(out, 1, 4, big);
   out += "\n$EndMeshFormat\n$Nodes\n";
   const std::uint64_t tags[] = {10, 20, 5, 7};
-  const double places[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const auto place = [&](std::size_t i) {
-    for (const double c : places[i]) put(out, std::bit_cast<std::uint64_t>(c), 8, big);
+  const double positions[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const auto put_position = [&](std::size_t i) {
+    for (const double c : positions[i]) put(out, std::bit_cast<std::uint64_t>(c), 8, big);
   };
   if (legacy) out += "4\n";
   for (const std::uint64_t v : {1U, 4U, 5U, 20U})
@@ -123,9 +123,9 @@ std::string binary_msh(bool legacy, bool big) {
   if (!legacy) put(out, 4, 8, big);
   for (std::size_t i = 0; i < 4; ++i) {
     put(out, tags[i], size, big);
-    if (legacy) place(i);
+    if (legacy) put_position(i);
   }
-  for (std::size_t i = 0; i < 4 && !legacy; ++i) place(i);
+  for (std::size_t i = 0; i < 4 && !legacy; ++i) put_position(i);
   out += "\n$EndNodes\n$Elements\n";
   if (legacy) {
     out += "2\n";

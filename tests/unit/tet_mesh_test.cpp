@@ -12,11 +12,11 @@
 namespace tactus::sim {
 namespace {
 
-void expect_broken(const TetMesh& mesh, std::string_view rule, std::string_view place) {
+void expect_broken(const TetMesh& mesh, std::string_view rule, std::string_view location) {
   const auto checked = check(mesh);
   ASSERT_FALSE(checked) << rule;
   EXPECT_EQ(checked.error().error.rule, rule);
-  EXPECT_EQ(place_of(checked.error()), place);
+  EXPECT_EQ(location_of(checked.error()), location);
 }
 
 TEST(TetMesh, SlabHasTheCountsOfTheThesis) {

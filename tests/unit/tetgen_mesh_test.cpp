@@ -22,7 +22,7 @@ bool has_tetgen() {
 void expect_broken(const tl::expected<TetMesh, Diagnostic>& filled, std::string_view rule, std::string_view detail) {
   ASSERT_FALSE(filled) << rule;
   EXPECT_EQ(filled.error().error.rule, rule) << to_string(filled.error());
-  EXPECT_EQ(place_of(filled.error()), detail);
+  EXPECT_EQ(location_of(filled.error()), detail);
 }
 
 TriMesh moved(TriMesh mesh, const Vec3& by) {

@@ -55,9 +55,9 @@ TEST(TouchRecord, TheEnergyOfEachContactIsItsOwn) {
 /// To and fro four times: a push from outside is none, nor is slow motion, nor what the hand is to do itself.
 TEST(TouchRecord, SwingsOfAHandThatHoldsStill) {
   using Aim = TouchRecord::Aim;
-  const auto swing = [](auto&& place, Aim aim) {
+  const auto swing = [](auto&& position, Aim aim) {
     TouchRecord record;
-    for (int tick = 0; tick < 4000; ++tick) record.add(pressing({1, 0, 0}, {place(1e-3 * tick), 0, 0}), aim);
+    for (int tick = 0; tick < 4000; ++tick) record.add(pressing({1, 0, 0}, {position(1e-3 * tick), 0, 0}), aim);
     return record.summary().swing;
   };
   const auto wave = [](double hertz) { return [hertz](double t) { return 2e-3 * std::sin(2 * 3.14159265 * hertz * t); }; };

@@ -53,7 +53,7 @@ TEST(ArrayTrace, MissingSamplesAndTimesAreLeftOutAndCounted) {
   EXPECT_EQ(notes.all()[2].where, "hand.force");
 }
 
-/// 10 Hz of ticks and a gap of 0.25 s: a force is held for as long, a place for ever.
+/// 10 Hz of ticks and a gap of 0.25 s: a force is held for as long, a position for ever.
 TEST(ArrayTrace, AForceIsHeldForAsLongAsTheGap) {
   std::vector<std::int64_t> time;
   std::vector<double> device, force;

@@ -83,13 +83,13 @@ TEST(TraceReplica, AWriterRefusesAClientThatStepsBack) {
 
 TEST(TraceReplica, AForceThatIsNotKnownIsMarked) {
   Recording recording = make_recording(3);
-  for (const KnownForces left : {KnownForces::both, KnownForces::rendered, KnownForces::server}) {
+  for (const RecordedForces left : {RecordedForces::both, RecordedForces::rendered, RecordedForces::server}) {
     recording.info.users[0].forces = left;
     const TempFile file;
     const auto reader = TraceReader::open_memory(write_recording(recording, file.path()));
     ASSERT_TRUE(reader);
     EXPECT_EQ(reader->info().users[0].forces, left);
-    EXPECT_EQ(reader->info().users[1].forces, KnownForces::both);
+    EXPECT_EQ(reader->info().users[1].forces, RecordedForces::both);
   }
 }
 

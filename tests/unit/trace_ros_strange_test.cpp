@@ -180,7 +180,7 @@ TEST(TraceRosStrange, TwoPublishersOfOnePoseAreReported) {
   const Notes notes = bag.notes();
   EXPECT_TRUE(has(
       notes, "/tool/pose",
-      "its samples go to and fro between two places, up to 1 m apart, as of two publishers: let each have a topic of its own"));
+      "its samples go to and fro between two positions, up to 1 m apart, as of two publishers: let each have a topic of its own"));
   RosBag one;
   for (int i = 0; i < 100; ++i) one.add(5 * i, "/tool/pose", kPoseSchema, along_x(0.1 * std::sin(0.5 * i)));
   for (const auto& [where, what] : one.notes()) EXPECT_EQ(what.find("to and fro"), std::string::npos) << what;
@@ -253,7 +253,7 @@ TEST(TraceRosStrange, NamesWithBlanksAndNoNames) {
 
 /// What read --stamps, --gap and --rate ask for, and --strict.
 TEST(TraceRosStrange, OptionsOfReading) {
-  const auto bag = [](RosBag& out) {  // header stamps at half the pace; 0.3 s are missing from 1 s on
+  const auto bag = [](RosBag& out) {  // header stamps at half the rate; 0.3 s are missing from 1 s on
     for (int i = 0; i < 200; ++i)
       if (i < 100 || i >= 130) out.add(10 * i, "/tool/pose", kPoseSchema, stamped_pose(20 * i, "world", {{0.001 * i, 0, 0}, {}}));
   };

@@ -28,11 +28,11 @@ TriMesh grid(std::uint32_t rows, std::uint32_t columns) {
   return mesh;
 }
 
-void expect_broken(const TriMesh& mesh, std::string_view rule, std::string_view place) {
+void expect_broken(const TriMesh& mesh, std::string_view rule, std::string_view location) {
   const auto checked = check(mesh);
   ASSERT_FALSE(checked) << rule;
   EXPECT_EQ(checked.error().error.rule, rule);
-  EXPECT_EQ(place_of(checked.error()), place);
+  EXPECT_EQ(location_of(checked.error()), location);
 }
 
 TEST(TriMesh, SoundMeshesPass) {

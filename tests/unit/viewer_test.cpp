@@ -73,7 +73,7 @@ TEST(Viewer, TheGhostIsWithinATwentiethOfTheBounds) {
 }
 
 /// What the page is sent of a user to whom nothing is rendered while the server renders so much.
-nlohmann::ordered_json user_of(KnownForces known, double server) {
+nlohmann::ordered_json user_of(RecordedForces known, double server) {
   TraceInfo info{.objects = {{"cube"}}, .users = {{.name = "hand", .forces = known}}, .source = {}, .scene = {}};
   TraceFrame frame{.objects = {{}}, .users = {{}}};
   frame.users[0].server_force = {0, 0, server};
@@ -85,15 +85,15 @@ nlohmann::ordered_json user_of(KnownForces known, double server) {
 }
 
 TEST(Viewer, ThePageIsSentWhichForcesAreKnown) {
-  EXPECT_EQ(user_of(KnownForces::both, 0)["knows"], "both");
-  EXPECT_FALSE(user_of(KnownForces::both, 0).contains("rendered"));
-  EXPECT_TRUE(user_of(KnownForces::both, 1).contains("rendered"));
-  EXPECT_EQ(user_of(KnownForces::server, 1)["knows"], "server");
-  EXPECT_FALSE(user_of(KnownForces::server, 1).contains("rendered"));
-  EXPECT_TRUE(user_of(KnownForces::server, 1).contains("server"));
-  EXPECT_EQ(user_of(KnownForces::rendered, 0)["knows"], "rendered");
-  EXPECT_FALSE(user_of(KnownForces::rendered, 0).contains("server"));
-  EXPECT_TRUE(user_of(KnownForces::rendered, 0).contains("rendered"));
+  EXPECT_EQ(user_of(RecordedForces::both, 0)["knows"], "both");
+  EXPECT_FALSE(user_of(RecordedForces::both, 0).contains("rendered"));
+  EXPECT_TRUE(user_of(RecordedForces::both, 1).contains("rendered"));
+  EXPECT_EQ(user_of(RecordedForces::server, 1)["knows"], "server");
+  EXPECT_FALSE(user_of(RecordedForces::server, 1).contains("rendered"));
+  EXPECT_TRUE(user_of(RecordedForces::server, 1).contains("server"));
+  EXPECT_EQ(user_of(RecordedForces::rendered, 0)["knows"], "rendered");
+  EXPECT_FALSE(user_of(RecordedForces::rendered, 0).contains("server"));
+  EXPECT_TRUE(user_of(RecordedForces::rendered, 0).contains("rendered"));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@ import {mkdtempSync, rmSync} from "node:fs";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 
-const patience = 60000;  // ms: against a browser that hangs
+const timeout = 60000;  // ms: against a browser that hangs
 
 export class Chromium {
   #process;
@@ -49,7 +49,7 @@ export class Chromium {
   call(method, params = {}, sessionId = undefined) {
     const id = this.#next++;
     return new Promise((resolve, reject) => {
-      const timer = setTimeout(() => reject(new Error(`${method}: no answer for ${patience / 1000} s`)), patience);
+      const timer = setTimeout(() => reject(new Error(`${method}: no answer for ${timeout / 1000} s`)), timeout);
       const settle = (react) => (value) => (clearTimeout(timer), react(value));
       this.#waiting.set(id, {method, resolve: settle(resolve), reject: settle(reject)});
       this.#process.stdio[3].write(`${JSON.stringify({id, method, params, sessionId})}\0`);
@@ -94,7 +94,7 @@ class Tab {
   }
 
   async until(condition) {
-    const end = Date.now() + patience;
+    const end = Date.now() + timeout;
     while (!(await this.run(`Boolean(${condition})`))) {
       if (Date.now() > end) throw new Error(`never came true: ${condition}`);
       await new Promise((resolve) => setTimeout(resolve, 20));

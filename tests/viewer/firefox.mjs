@@ -6,7 +6,7 @@ import {createConnection} from "node:net";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 
-const patience = 60000;  // ms: against a browser that hangs
+const timeout = 60000;  // ms: against a browser that hangs
 const codes = {Home: "\uE011", End: "\uE010", ArrowRight: "\uE014", Shift: "\uE008"};  // WebDriver, section 15.4.2
 const settings = {
   "marionette.port": 0,  // any: it is written to a file
@@ -20,11 +20,11 @@ const settings = {
 const pause = () => new Promise((resolve) => setTimeout(resolve, 20));
 
 async function wait(what, found) {
-  for (const end = Date.now() + patience; Date.now() < end; await pause()) {
+  for (const end = Date.now() + timeout; Date.now() < end; await pause()) {
     const value = found();
     if (value) return value;
   }
-  throw new Error(`${what}: nothing for ${patience / 1000} s`);
+  throw new Error(`${what}: nothing for ${timeout / 1000} s`);
 }
 
 export class Firefox {
@@ -50,7 +50,7 @@ export class Firefox {
     await browser.#connect();
     await browser.call("WebDriver:NewSession", {strictFileInteractability: true});
     browser.#first = (await browser.call("WebDriver:GetWindowHandle")).value;
-    await browser.call("WebDriver:SetTimeouts", {script: patience, pageLoad: patience});
+    await browser.call("WebDriver:SetTimeouts", {script: timeout, pageLoad: timeout});
     return browser;
   }
 
@@ -98,7 +98,7 @@ export class Firefox {
   call(command, params = {}) {
     const id = this.#next++;
     return new Promise((resolve, reject) => {
-      const timer = setTimeout(() => reject(new Error(`${command}: no answer for ${patience / 1000} s`)), patience);
+      const timer = setTimeout(() => reject(new Error(`${command}: no answer for ${timeout / 1000} s`)), timeout);
       const settle = (react) => (value) => (clearTimeout(timer), react(value));
       this.#waiting.set(id, {command, resolve: settle(resolve), reject: settle(reject)});
       const text = JSON.stringify([0, id, command, params]);
@@ -148,7 +148,7 @@ class Tab {
   }
 
   async until(condition) {
-    const end = Date.now() + patience;
+    const end = Date.now() + timeout;
     while (!(await this.run(`Boolean(${condition})`))) {
       if (Date.now() > end) throw new Error(`never came true: ${condition}`);
       await pause();

@@ -213,7 +213,7 @@ const tests = {
       const drawn = await tab.run(`(() => {
         const texts = [];
         const draw = CanvasRenderingContext2D.prototype.fillText;
-        CanvasRenderingContext2D.prototype.fillText = function (text, ...place) { texts.push(text), draw.call(this, text, ...place); };
+        CanvasRenderingContext2D.prototype.fillText = function (text, ...position) { texts.push(text), draw.call(this, text, ...position); };
         tactusView.page.timeline.draw();
         return texts.filter((text) => /^force/.test(text));
       })()`);

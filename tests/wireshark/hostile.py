@@ -40,9 +40,9 @@ def read_part(kind: int, direction: int, e: Cursor) -> None:
     if kind == session.CLOCK:
         require(e.varint(CUT, SPARE) < session.END_OF_TIME and e.left() == 0, *SPARE)
         return
-    if kind == session.PACE and direction == DOWN:
+    if kind == session.TICK_MAPPING and direction == DOWN:
         begin, offset = e.varint(CUT, SPARE), e.varint(CUT, SPARE)
-        require(begin < session.END_OF_TICKS and offset <= 2 * session.FARTHEST_PACE and e.left() == 0, *SPARE)
+        require(begin < session.END_OF_TICKS and offset <= 2 * session.FARTHEST_OFFSET and e.left() == 0, *SPARE)
         return
     sizes = {session.ACK: (2, 2), session.BUTTONS: (4, 4), session.STATE: (1,), session.HASH: (1, 2, 4)}
     varints = {session.ACK: 1, session.CLOCK: 1, session.PIECE: 1, session.FRAGMENT: 4, session.PACKET_PART: 1}
@@ -159,8 +159,8 @@ def bases(rows: list[Row], rng: random.Random) -> list[list[tuple[int, bytes]]]:
     kinds["join"] = [(UP, join[:at] + byte + join[at + 1:]) for at, byte in ((2, b"t"), (6, b"\2"), (7, b"\2"))]  # magic, version, role
     kinds["refusal"] = [(DOWN, session.head(session.HANDSHAKE, session.REFUSAL) + rng.randbytes(8) + b"\x02")]
     kinds["received"] = [(UP, parts + ack + part(session.BUTTONS, bytes(8)) + part(session.STATE, b"\1") + part(session.HASH, bytes(7)))]
-    paces = part(session.PACE, b"\x07\x03") + part(session.PACE, b"\xff\xff\xff\xff\x0f\xff\xff\xff\xff\x3f")
-    kinds["paces"] = [(DOWN, parts + ack + part(session.CLOCK, b"\x05") + paces + part(session.PACKET_PART, b"\1abc"))]
+    mappings = part(session.TICK_MAPPING, b"\x07\x03") + part(session.TICK_MAPPING, b"\xff\xff\xff\xff\x0f\xff\xff\xff\xff\x3f")
+    kinds["tick mappings"] = [(DOWN, parts + ack + part(session.CLOCK, b"\x05") + mappings + part(session.PACKET_PART, b"\1abc"))]
     kinds["fragment"] = [(d, parts + ack + part(session.FRAGMENT, b"\x01\x00\x02\x03" + bytes(n))) for d in (UP, DOWN) for n in (5, 1150)]
     kinds["skipped"] = [(DOWN, parts + part(session.PACKET_PART, b"\0abc") + part(64, b"later") + part(255, b""))]
     return list(kinds.values())

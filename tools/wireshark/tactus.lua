@@ -13,12 +13,12 @@
 -- tactus.ack.frame (the datagram that is acknowledged), tactus.ack.sample (70, section 7), tactus.packet.baseline, tactus.packet.tick.
 local VERSION = 1
 local END_OF_TIME, END_OF_TICKS = 2 ^ 53, 2 ^ 32
-local FARTHEST_PACE = 2 ^ 34 -- as zigzag
+local FARTHEST_OFFSET = 2 ^ 34 -- as zigzag
 local LARGEST, PIECE, FRAGMENT = 1200, 1024, 1150
 local HANDSHAKE, PARTS, PACKET = 0, 1, 2
 local JOIN, WELCOME, REFUSAL, LEAVE = 0, 1, 2, 3
 local ACK, CLOCK, BUTTONS, PIECES, STATE, HASH, FRAGMENTS, PACKETS = 1, 2, 3, 4, 5, 6, 7, 8
-local PACE = BUTTONS -- down
+local TICK_MAPPING = BUTTONS -- down
 local UP, DOWN = 0, 1
 local MOST_EPOCHS = 8 -- of a conversation that checks are tried for, the newest ones
 
@@ -28,7 +28,7 @@ tactus.prefs.port = Pref.uint("UDP port of servers", 7447, "For captures that be
 -- ---- Fields and rules ------------------------------------------------------------------------------------------------
 local forms = { [0] = "handshake", "parts", "packet", "reserved" }
 local kinds = { [0] = "join", "welcome", "refusal", "leave" }
-local part_names = { "acknowledgement", "clock", "buttons or pace", "piece or report", "state or seat", "hash or baselines", "fragment", "packet" }
+local part_names = { "acknowledgement", "clock", "buttons or tick mapping", "piece or report", "state or seat", "hash or baselines", "fragment", "packet" }
 local reasons = { [0] = "bye", "version", "full", "limits", "silence", "scene", "protocol" }
 local statuses = { [0] = "bad", "good", "unverified" }
 local directions = { [0] = "up", "down" }
@@ -82,8 +82,8 @@ field("ack.sample", u64, "Round trip from here, without the hold time [us]", bas
 field("clock.time", u64, "Server's clock [us]", base.DEC)
 field("buttons.tick", u32, "Since tick of the device")
 field("buttons.mask", u32, "Buttons that are down", base.HEX)
-field("pace.from", u64, "From this tick of the server on", base.DEC)
-field("pace.offset", ProtoField.int64, "Ticks of the server less those of the device", base.DEC)
+field("tick_mapping.from", u64, "From this tick of the server on", base.DEC)
+field("tick_mapping.offset", ProtoField.int64, "Ticks of the server less those of the device", base.DEC)
 field("piece.index", u64, "Index", base.DEC)
 field("piece.data", raw, "Bytes of the declaration")
 field("piece.received", u64, "Bytes of the declaration so far", base.DEC)
@@ -411,15 +411,15 @@ add_part[BUTTONS] = function(r, tree, d)
     r:add(tree, "buttons.mask", 4)
     return "buttons"
   end
-  local from, range, zigzag = r:add_varint(tree, "pace.from"), r:varint()
-  if not zigzag then return "pace" end
-  if from >= END_OF_TICKS or zigzag > FARTHEST_PACE then
+  local from, range, zigzag = r:add_varint(tree, "tick_mapping.from"), r:varint()
+  if not zigzag then return "tick mapping" end
+  if from >= END_OF_TICKS or zigzag > FARTHEST_OFFSET then
     r.broken = true
-    return "pace"
+    return "tick mapping"
   end
   local offset = zigzag % 2 == 0 and zigzag / 2 or -(zigzag + 1) / 2
-  tree:add(f["pace.offset"], range, Int64.new(floor(offset)))
-  return string.format("pace from %.0f, offset %.0f", from, offset)
+  tree:add(f["tick_mapping.offset"], range, Int64.new(floor(offset)))
+  return string.format("tick mapping from %.0f, offset %.0f", from, offset)
 end
 
 add_part[PIECES] = function(r, tree, d)
@@ -519,7 +519,7 @@ local function add_parts(tree, d)
     end
     local kind = type_range:uint()
     local part = tree:add(f.part, d.tvb:range(from, r.at + size - from))
-    local names = kind == PACE and { "buttons", "pace" } or kind == PIECES and { "report", "piece" } or kind == STATE and { "state", "seat" } or
+    local names = kind == TICK_MAPPING and { "buttons", "tick mapping" } or kind == PIECES and { "report", "piece" } or kind == STATE and { "state", "seat" } or
       kind == HASH and { "hash", "baselines" } or {}
     part:append_text(": " .. (names[d.direction == UP and 1 or 2] or types[kind] or "reserved"))
     part:add(f["part.type"], type_range)

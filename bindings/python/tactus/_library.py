@@ -31,7 +31,7 @@ class Error(Exception):
     name        class of the error as the specification writes it, such as "checksum"
     code        its number (spec/registry.md)
     rule        rule that was broken, such as "R-FIL-5" (spec/rules.csv)
-    bit_offset  place in the input [bits]; 0: none
+    bit_offset  position in the input [bits]; 0: none
     remedy      a sentence on how to fix it; may be empty
     advice      how a receiver reacts: "none", "drop", "request_key" or "close"
     subject     file or object that it concerns; may be empty
@@ -50,11 +50,11 @@ class Error(Exception):
         self.remedy: str = _REMEDIES.get(self.rule) or library.tactus_error_remedy(by_reference).decode()
         self.advice: str = ("none", "drop", "request_key", "close")[library.tactus_error_advice(by_reference)]
         self.subject, self.words, self.detail = subject, words, detail
-        place = f" at byte {self.bit_offset // 8}" if self.bit_offset else ""
+        position = f" at byte {self.bit_offset // 8}" if self.bit_offset else ""
         text = library.tactus_error_text(by_reference).decode()
         subject = f"{subject}: " if subject else ""
         figures = f": {detail}" if detail else ""
-        super().__init__(words or f"{subject}{text}{place} ({self.name}, {self.rule}){figures}. {self.remedy}".rstrip())
+        super().__init__(words or f"{subject}{text}{position} ({self.name}, {self.rule}){figures}. {self.remedy}".rstrip())
 
     def __reduce__(self) -> Any:  # workers of multiprocessing send it to their parent
         return _error_of, self._of

@@ -20,7 +20,7 @@ from .options import DeformableBounds, RigidBounds
 from .scene import Mesh, Scene
 
 #: One user at one tick: device (position (3) [m], orientation (4), velocity (3) [m/s], buttons, time [ns]); contact as CONTACT;
-#: force (3) [N] as rendered to the hand and server_force (3) [N] of the true state: see TraceReader.known_forces; touches_mesh, mesh, triangle,
+#: force (3) [N] as rendered to the hand and server_force (3) [N] of the true state: see TraceReader.recorded_forces; touches_mesh, mesh, triangle,
 #: weights (3), proxy (3) [m], mesh_normal (3), mesh_stiffness [N/m]. World frame.
 USER = np.dtype(_abi.tactus_user_sample)
 
@@ -81,7 +81,7 @@ class TraceReader(Handle):
         self.users: list[str] = [entry.name.decode() for entry in users]
         #: per user: "rendered", if the force rendered to the hand is known, else `force` is the server's; "server", if the server's force is
         #: known, else `server_force` is 0. A server does not receive the one, a client not the other
-        self.known_forces: list[frozenset[str]] = [_names_of_forces(entry.forces) for entry in users]
+        self.recorded_forces: list[frozenset[str]] = [_names_of_forces(entry.forces) for entry in users]
         self.meshes: list[Mesh] = [self._mesh(i) for i in range(info.meshes)]
 
     def _entries(self, function: Any, structure: Any, count: int) -> list[Any]:
@@ -149,7 +149,7 @@ class Trace:
     objects       (T, N, 13) float64, as Frame.objects
     users         (T, U) of dtype USER
     shapes        per mesh: ticks (F,) int64 at which its shape is new, and displacements (F, V, 3) float32 [m] from rest
-    known_forces  per user, as TraceReader.known_forces
+    recorded_forces  per user, as TraceReader.recorded_forces
     notes         what was decided where arrays left it open: missing samples, times off the grid
     dofs, senses  as TraceReader.dofs, .senses; None: all axes, no senses
     """
@@ -162,7 +162,7 @@ class Trace:
     objects: npt.NDArray[np.float64]
     users: npt.NDArray[np.void]
     shapes: list[tuple[npt.NDArray[np.int64], npt.NDArray[np.float32]]]
-    known_forces: list[frozenset[str]]
+    recorded_forces: list[frozenset[str]]
     notes: list[str] = dataclasses.field(default_factory=list)
     dofs: list[int] | None = None
     senses: list[int] | None = None
@@ -178,7 +178,7 @@ class Trace:
         poses      name -> (T, 3) positions [m], (T, 7) positions and quaternions, a tuple of (T, 3) and (T, 4), or a data frame with columns
                    x, y, z and qw, qx, qy, qz; without a name "object". World frame, right-handed
         wrenches   name -> (T, 3) force on the user [N], (T, 6) with the torque, which is left out, or columns fx, fy, fz; else "user"
-        devices    name -> places of the devices [m], with or without rotations, as poses
+        devices    name -> positions of the devices [m], with or without rotations, as poses
         contacts   user -> (object, stiffness [N/m]) or (object, stiffness, "plane" or "spring"): what the user touched. It gives the
                    recorded forces a bound: each stretches a spring between the device, or the object's origin if the user has none, and the
                    object; what lies along the force counts, or ("spring", as of a grip) the whole vector
@@ -244,12 +244,12 @@ class Trace:
 
     @property
     def force(self) -> npt.NDArray[np.float64]:
-        """(T, U, 3) [N] rendered to the hands, world; the server's of users without "rendered" in known_forces"""
+        """(T, U, 3) [N] rendered to the hands, world; the server's of users without "rendered" in recorded_forces"""
         return self.users["force"]
 
     @property
     def device(self) -> npt.NDArray[np.float64]:
-        """(T, U, 3) [m] places of the devices, world"""
+        """(T, U, 3) [m] positions of the devices, world"""
         return self.users["device"]["position"]
 
 
@@ -264,7 +264,7 @@ class _Writer(Handle):
         call(library.tactus_trace_writer_create, text_of(os.fsencode(path)), of.tick_rate, text_of(of.source.encode()), ctypes.byref(self._handle))
         for name, dof in zip(of.object_names, of.dofs or [63] * len(of.object_names)):
             call(library.tactus_trace_writer_object, self.handle, text_of(name.encode()), dof, subject=name)
-        for name, senses, known in zip(of.user_names, of.senses or [0] * len(of.user_names), of.known_forces):
+        for name, senses, known in zip(of.user_names, of.senses or [0] * len(of.user_names), of.recorded_forces):
             bits = (_abi.TACTUS_FORCE_RENDERED if "rendered" in known else 0) | (_abi.TACTUS_FORCE_SERVER if "server" in known else 0)
             call(library.tactus_trace_writer_user, self.handle, text_of(name.encode()), senses, bits, subject=name)
         for mesh in of.meshes:
@@ -304,4 +304,4 @@ def read_trace(file: str | os.PathLike[str] | bytes) -> Trace:
                      np.array(users, USER).reshape(len(ticks), len(reader.users)),
                      [(np.array(at, np.int64), np.array(kept, np.float32).reshape(len(at), len(mesh.vertices), 3))
                       for (at, kept), mesh in zip(shapes, reader.meshes)],
-                     reader.known_forces, [], reader.dofs, reader.senses)
+                     reader.recorded_forces, [], reader.dofs, reader.senses)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model that a server feeds: the newest half a minute, without what lies before a place to begin at.
+// A model that a server feeds: the newest half a minute, without what lies before a key tick, to begin at.
 import {GrowingTable} from "./growing.js";
 import {Model, readTruth} from "./model.js";
 import {bytesOf} from "./read_columns.js";
@@ -11,7 +11,7 @@ export class LiveModel extends Model {
   #hello;
   #rows;
   #meshes;
-  #places = [];  // to begin at: how much of each table lies before them
+  #keyTicks = [];  // to begin at: how much of each table lies before them
   #gone;         // the same of what has left
 
   // in  hello, batch  the first two messages of the server
@@ -38,7 +38,7 @@ export class LiveModel extends Model {
   }
 
   get start() {
-    return this.#places[0].tick / this.tickRate;
+    return this.#keyTicks[0].tick / this.tickRate;
   }
 
   // in  follows  the newest tick is shown
@@ -57,7 +57,7 @@ export class LiveModel extends Model {
 
   #note(batch, before) {
     this.leftOut = batch.left_out;
-    if (batch.key) this.#places.push({tick: this.truth.ticks[before[2] - this.#gone[2]], before});
+    if (batch.key) this.#keyTicks.push({tick: this.truth.ticks[before[2] - this.#gone[2]], before});
   }
 
   #drop(counts) {
@@ -68,9 +68,9 @@ export class LiveModel extends Model {
   #forget() {
     const isOld = ({tick}) => tick <= this.lastTick - keptSeconds * this.tickRate;
     const isMuch = () => this.replay.bytes + this.ghost.bytes > mostBytes;
-    while (this.#places.length > 1 && (isOld(this.#places[1]) || isMuch())) {
-      this.#places.shift();
-      this.#drop(this.#places[0].before.map((count, i) => count - this.#gone[i]));
+    while (this.#keyTicks.length > 1 && (isOld(this.#keyTicks[1]) || isMuch())) {
+      this.#keyTicks.shift();
+      this.#drop(this.#keyTicks[0].before.map((count, i) => count - this.#gone[i]));
     }
   }
 

@@ -193,8 +193,8 @@ class Page {
     else this.model.moveTo(tick);
     this.timeline.moveTo(this.clock.time);
     this.#fillReadings(tick);
-    const isPlace = !this.clock.plays && !this.model.isLive;
-    if (isPlace) history.replaceState(null, "", `#t=${this.clock.time.toFixed(3)}`);
+    const isStill = !this.clock.plays && !this.model.isLive;
+    if (isStill) history.replaceState(null, "", `#t=${this.clock.time.toFixed(3)}`);
   }
 
   #fillReadings(tick) {

@@ -110,7 +110,7 @@ export class SceneView {
     this.#renderer.render(this.scene, this.camera);
   }
 
-  // Place of a point in the window, in CSS pixels.
+  // Position of a point in the window, in CSS pixels.
   project(point) {
     const p = new Vector3(...point).project(this.camera);
     const at = this.#canvas.getBoundingClientRect();

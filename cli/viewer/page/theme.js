@@ -15,8 +15,8 @@ const stops = [0x440154, 0x482475, 0x414487, 0x355f8d, 0x2a788e, 0x21918c, 0x22a
 
 export const mapSteps = 256;
 export const map = Array.from({length: mapSteps}, (_, i) => {
-  const place = (i / (mapSteps - 1)) * (stops.length - 1);
-  const low = Math.min(Math.floor(place), stops.length - 2);
+  const position = (i / (mapSteps - 1)) * (stops.length - 1);
+  const low = Math.min(Math.floor(position), stops.length - 2);
   const part = (stop, shift) => (stops[stop] >> shift) & 255;
-  return [16, 8, 0].map((shift) => Math.round(part(low, shift) * (low + 1 - place) + part(low + 1, shift) * (place - low)));
+  return [16, 8, 0].map((shift) => Math.round(part(low, shift) * (low + 1 - position) + part(low + 1, shift) * (position - low)));
 });

@@ -107,7 +107,7 @@ Json signals_point(Request& request) {
   TickSpan ticks;
   TraceFrame frame;
   while (need(reader.next(frame), path)) {
-    need(signals.add(frame), path, cli::place_of_tick(frame.tick));
+    need(signals.add(frame), path, cli::location_of_tick(frame.tick));
     ticks.add(frame.tick);
   }
   const auto results = signals.results();

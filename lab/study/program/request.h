@@ -26,10 +26,10 @@ struct Refused {
   throw Refused{cli::refuse_arguments(std::move(text), std::move(remedy)).value()};
 }
 
-/// The value, or the error in the words of cli::refuse(place..., error).
-template <class Expected, class... Place>
-auto need(Expected expected, const Place&... place) {
-  if (!expected) throw Refused{cli::refuse(place..., expected.error()).value()};
+/// The value, or the error in the words of cli::refuse(location..., error).
+template <class Expected, class... Location>
+auto need(Expected expected, const Location&... location) {
+  if (!expected) throw Refused{cli::refuse(location..., expected.error()).value()};
   if constexpr (!std::is_void_v<typename Expected::value_type>) return *std::move(expected);
 }
 

@@ -145,8 +145,8 @@ Json with_forces(const sim::Scene& scene, const ForceCoding& coding, sim::Grip g
     devices[0] = hand.step(rendered, simulation.client_poses()[scene.users[0].object]);
     need(simulation.step(devices));
     const UserSample& user = simulation.frame().users[0];
-    const auto sample = need(sender.encode(tick, user.server_force), scene.name, cli::place_of_tick(tick));
-    if (!sample.empty()) need(receiver.push(sample), scene.name, cli::place_of_tick(tick));
+    const auto sample = need(sender.encode(tick, user.server_force), scene.name, cli::location_of_tick(tick));
+    if (!sample.empty()) need(receiver.push(sample), scene.name, cli::location_of_tick(tick));
     counter.add(user, sample.empty() ? 0 : 1, receiver.force(tick));
   }
   return counter.json();
@@ -202,7 +202,7 @@ Json interpolations_point(Request& request) {
     std::vector<double> row(1 + watchers.size());
     if (contact.kind != ContactKind::none) row[0] = norm(contact_force(contact, frame.objects[contact.object].pose));
     for (std::size_t i = 0; i < watchers.size(); ++i) {
-      need(watchers[i].take(packets), scene.name, cli::place_of_tick(tick));
+      need(watchers[i].take(packets), scene.name, cli::location_of_tick(tick));
       if (contact.kind == ContactKind::none) watchers[i].let_go();
       else row[1 + i] = norm(watchers[i].look(frame, contact, !packets.empty(), channel.sender.triggers));
     }
@@ -225,7 +225,7 @@ Json interpolations_point(Request& request) {
 
 Json rates_point(Request& request) {
   sim::Scene scene = scene_of(request);
-  if (request.has("pace")) sim::set_pace(scene, request.get<double>("pace"));
+  if (request.has("duration_scale")) sim::scale_durations(scene, request.get<double>("duration_scale"));
   if (request.has("tremor_m")) sim::set_tremor(scene, request.get<double>("tremor_m"));
   const sim::Grip grip = grip_of_request(request);
   const auto seed = request.get<std::uint64_t>("seed", 1);

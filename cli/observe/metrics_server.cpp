@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/observe/monitor_door.h"
+#include "cli/observe/metrics_server.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 
 #include "cli/live/live_report.h"
 #include "cli/live/ticker.h"
-#include "cli/observe/web_door.h"
+#include "cli/observe/web_server.h"
 
 namespace tactus::cli {
 namespace {
@@ -20,16 +20,16 @@ namespace {
 constexpr std::string_view kMetrics = "/metrics", kHealth = "/health";
 constexpr unsigned kUnwell = 503;
 
-class OpenMonitorDoor final : public MonitorDoor {
+class ListeningMetricsServer final : public MetricsServer {
  public:
-  OpenMonitorDoor(std::uint16_t port, const Monitor& monitor, ServerFacts facts) : monitor_(monitor), facts_(std::move(facts)) {
-    address_ = fmt::format("http://127.0.0.1:{}{}", door_.open(port), kMetrics);
-    door_.serve({.targets = {kMetrics, kHealth},
+  ListeningMetricsServer(std::uint16_t port, const Monitor& monitor, ServerFacts facts) : monitor_(monitor), facts_(std::move(facts)) {
+    address_ = fmt::format("http://127.0.0.1:{}{}", server_.open(port), kMetrics);
+    server_.serve({.targets = {kMetrics, kHealth},
                  .nothing = "There are /metrics and /health.\n",
                  .page = [this](std::string_view target) { return page(target); }});
     thread_ = std::thread([this] { work(); });
   }
-  ~OpenMonitorDoor() override {
+  ~ListeningMetricsServer() override {
     context_.stop();
     thread_.join();
   }
@@ -55,15 +55,15 @@ class OpenMonitorDoor final : public MonitorDoor {
   ServerFacts facts_;
   std::string address_;
   boost::asio::io_context context_{1};
-  WebDoor door_{context_};
+  WebServer server_{context_};
   std::thread thread_;
 };
 
 }  // namespace
 
-tl::expected<std::unique_ptr<MonitorDoor>, Failure> MonitorDoor::create(std::uint16_t port, const Monitor& monitor,
+tl::expected<std::unique_ptr<MetricsServer>, Failure> MetricsServer::create(std::uint16_t port, const Monitor& monitor,
                                                                         ServerFacts facts) try {
-  return std::make_unique<OpenMonitorDoor>(port, monitor, std::move(facts));
+  return std::make_unique<ListeningMetricsServer>(port, monitor, std::move(facts));
 } catch (const boost::system::system_error& error) {
   return refuse_port(fmt::format("--metrics {}", port), port, error.code().value(), "tcp");
 }

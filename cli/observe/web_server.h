@@ -52,7 +52,7 @@ class Outbox {
 };
 
 // ==== web request ====
-// Which requests are answered. The door is open on this machine alone, but any page that a browser shows can make it knock: by an
+// Which requests are answered. The server listens on this machine alone, but any page that a browser shows can make it connect: by an
 // address of its own that resolves to this machine, or by a script.
 
 struct WebRequest {
@@ -76,7 +76,7 @@ struct WebPage {
   unsigned status = kPageAnswer;
 };
 
-/// What a door has.
+/// What a server has.
 struct WebSite {
   std::vector<std::string_view> targets;  ///< kLiveTarget: its pages may observe
   std::string_view nothing;               ///< sentence where none of them is meant
@@ -86,23 +86,23 @@ struct WebSite {
 /// The host must be this machine by number or as localhost, with our port, and a WebSocket must be asked for by the page from there.
 WebAnswer judge(const WebRequest& request, std::uint16_t port, const WebSite& site);
 
-// ==== web door ====
-// A door on this machine: pages by HTTP, and a WebSocket for each page that observes. The only file of the program that knows Boost.Beast.
+// ==== web server ====
+// A server on this machine: pages by HTTP, and a WebSocket for each page that observes. The only file of the program that knows Boost.Beast.
 // All of it runs in the thread of its context.
 //
-// Whoever knocks is distrusted: requests are judged, are small, without a body, and come within seconds; so many at a
+// Whoever connects is distrusted: requests are judged, are small, without a body, and come within seconds; so many at a
 // time. An observer that sends anything is shown out; one that is too slow as well, and may come again.
 
-class WebDoor {
+class WebServer {
  public:
   struct Counts {
     std::uint64_t observers = 0, most_at_a_time = 0, too_slow = 0, requests_refused = 0;
   };
 
-  explicit WebDoor(boost::asio::io_context& context);
-  ~WebDoor();
-  WebDoor(const WebDoor&) = delete;
-  WebDoor& operator=(const WebDoor&) = delete;
+  explicit WebServer(boost::asio::io_context& context);
+  ~WebServer();
+  WebServer(const WebServer&) = delete;
+  WebServer& operator=(const WebServer&) = delete;
 
   /// Listen on the loopback.   in  port  0: any free one   out  the port   throws boost::system::system_error
   std::uint16_t open(std::uint16_t port);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The door of `serve --metrics`: /metrics for Prometheus and /health, on this machine, served by a thread of its own.
+/// The endpoint of `serve --metrics`: /metrics for Prometheus and /health, on this machine, served by a thread of its own.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace tactus::cli {
 
-class MonitorDoor {
+class MetricsServer {
  public:
   /// pre  the monitor outlives it
   /// in   port  0: any free one
   /// err  the port is taken or not allowed; this program was built without it
-  static tl::expected<std::unique_ptr<MonitorDoor>, Failure> create(std::uint16_t port, const Monitor& monitor,
+  static tl::expected<std::unique_ptr<MetricsServer>, Failure> create(std::uint16_t port, const Monitor& monitor,
                                                                     ServerFacts facts);
-  virtual ~MonitorDoor() = default;
+  virtual ~MetricsServer() = default;
 
   virtual const std::string& address() const noexcept = 0;  ///< "http://127.0.0.1:9464/metrics"
 };

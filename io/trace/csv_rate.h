@@ -14,7 +14,7 @@
 
 namespace tactus {
 
-struct CsvPace {
+struct CsvRate {
   std::uint32_t tick_rate = 0;
   bool is_off_grid = false;  ///< rows lie between ticks
   double period = 0;         ///< [ns] of rows that come in groups; 0: they do not
@@ -25,13 +25,13 @@ struct CsvPace {
 
 /// Of the first rows, in order.   out  what was decided is reported in the plan's notes
 /// err  invalid_argument R-CSV-7; invalid R-CSV-5, R-CSV-11
-CsvResult<CsvPace> find_pace(std::span<const CsvRow> rows, const CsvMapping& mapping, CsvNamedPlan& plan);
+CsvResult<CsvRate> estimate_rate(std::span<const CsvRow> rows, const CsvMapping& mapping, CsvNamedPlan& plan);
 
 /// Even times for rows in groups, which follow the clock of the table slowly.
 class EvenTimes {
  public:
   EvenTimes() = default;
-  explicit EvenTimes(const CsvPace& pace) : pace_(pace) {}
+  explicit EvenTimes(const CsvRate& rate) : rate_(rate) {}
   /// [ns] in order;  in  object  of a long table
   std::int64_t time_of(const CsvRow& row, std::size_t object);
 
@@ -41,7 +41,7 @@ class EvenTimes {
     std::int64_t first = 0, time = 0;  // [ns] of the table
     double even = 0, correction = 0;   // [ns] since `first`; per row
   };
-  CsvPace pace_;
+  CsvRate rate_;
   std::map<std::size_t, Last> last_;
 };
 

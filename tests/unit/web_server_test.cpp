@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/observe/web_door.h"
+#include "cli/observe/web_server.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/observe/web_door.h"
+#include "cli/observe/web_server.h"
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
@@ -30,7 +30,7 @@ WebAnswer judge(const WebRequest& request, std::uint16_t port, const WebSite& si
   return {kLiveAnswer};
 }
 
-// ==== web door ====
+// ==== web server ====
 
 namespace {
 
@@ -47,17 +47,17 @@ constexpr std::size_t kMostHeard = 125;                           // [bytes] of 
 constexpr int kSystemBuffer = 1 << 17;                            // [bytes] what the system may hold beside that
 constexpr std::size_t kMostWaiting = 90, kMostBytes = 16U << 20;  // messages and bytes for one observer: three seconds
 // For a request, for the page to be taken, and without a keep-alive.
-constexpr auto kPatience = 5s, kPagePatience = 15s, kIdle = 20s;
+constexpr auto kTimeout = 5s, kPageTimeout = 15s, kIdle = 20s;
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
-websocket::stream_base::timeout timeouts() { return {kPatience, kIdle, true}; }
+websocket::stream_base::timeout timeouts() { return {kTimeout, kIdle, true}; }
 
 class Observer;
 
 }  // namespace
 
-struct WebDoor::Impl {
+struct WebServer::Impl {
   explicit Impl(asio::io_context& context) : acceptor(context), pause(context) {}
 
   void accept();
@@ -75,7 +75,7 @@ struct WebDoor::Impl {
 
 namespace {
 
-/// One connection of those that the door counts; it may outlive the door.
+/// One connection of those that the server counts; it may outlive the server.
 class Visit {
  public:
   explicit Visit(std::shared_ptr<std::size_t> visitors) : visitors_(std::move(visitors)) { ++*visitors_; }
@@ -92,8 +92,8 @@ class Visit {
 /// A page that observes.
 class Observer : public std::enable_shared_from_this<Observer> {
  public:
-  Observer(WebDoor::Impl& door, Visit visit, beast::tcp_stream stream)
-      : door_(door), visit_(std::move(visit)), stream_(std::move(stream)) {
+  Observer(WebServer::Impl& server, Visit visit, beast::tcp_stream stream)
+      : server_(server), visit_(std::move(visit)), stream_(std::move(stream)) {
     stream_.next_layer().expires_never();
     error_code ignored;
     stream_.next_layer().socket().set_option(asio::socket_base::send_buffer_size(kSystemBuffer), ignored);
@@ -104,7 +104,7 @@ class Observer : public std::enable_shared_from_this<Observer> {
 
   void begin(const http::request<http::empty_body>& request) {
     stream_.async_accept(request, [self = shared_from_this()](const error_code& error) {
-      if (error) return self->door_.leave(self.get());
+      if (error) return self->server_.leave(self.get());
       self->is_open_ = true;
       self->listen();
     });
@@ -115,7 +115,7 @@ class Observer : public std::enable_shared_from_this<Observer> {
     bool has_room = true;
     if (!std::exchange(has_begun_, true)) has_room = outbox_.push(std::make_shared<const std::string>(hello));
     if (has_room && outbox_.push(message)) return write();
-    ++door_.counts.too_slow;
+    ++server_.counts.too_slow;
     outbox_.clear();
     close({websocket::close_code::try_again_later, "too slow"});
   }
@@ -137,7 +137,7 @@ class Observer : public std::enable_shared_from_this<Observer> {
   /// For keep-alives and the end; an observer has nothing to send.
   void listen() {
     stream_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
-      if (error) return self->door_.leave(self.get());
+      if (error) return self->server_.leave(self.get());
       self->outbox_.clear();
       self->close({websocket::close_code::policy_error, "an observer has nothing to send"});
     });
@@ -147,18 +147,18 @@ class Observer : public std::enable_shared_from_this<Observer> {
     if (is_writing_) return;
     is_writing_ = true;
     if (outbox_.is_empty() && farewell_) {
-      stream_.async_close(*farewell_, [self = shared_from_this()](const error_code&) { self->door_.leave(self.get()); });
+      stream_.async_close(*farewell_, [self = shared_from_this()](const error_code&) { self->server_.leave(self.get()); });
       return;
     }
     in_flight_ = outbox_.pop();
     stream_.async_write(asio::buffer(*in_flight_), [self = shared_from_this()](const error_code& error, std::size_t) {
-      if (error) return self->door_.leave(self.get());
+      if (error) return self->server_.leave(self.get());
       self->is_writing_ = false;
       if (!self->outbox_.is_empty() || self->farewell_) self->write();
     });
   }
 
-  WebDoor::Impl& door_;
+  WebServer::Impl& server_;
   Visit visit_;
   websocket::stream<beast::tcp_stream> stream_;
   beast::flat_buffer buffer_;
@@ -171,13 +171,13 @@ class Observer : public std::enable_shared_from_this<Observer> {
 /// A request and its answer.
 class Knock : public std::enable_shared_from_this<Knock> {
  public:
-  Knock(WebDoor::Impl& door, asio::ip::tcp::socket socket) : door_(door), visit_(door.visitors), stream_(std::move(socket)) {
+  Knock(WebServer::Impl& server, asio::ip::tcp::socket socket) : server_(server), visit_(server.visitors), stream_(std::move(socket)) {
     parser_.header_limit(kMostHeader);
     parser_.body_limit(0);
   }
 
   void begin() {
-    stream_.expires_after(kPatience);
+    stream_.expires_after(kTimeout);
     http::async_read(stream_, buffer_, parser_, [self = shared_from_this()](const error_code& error, std::size_t) {
       if (!error) return self->answer();
       const bool is_gone = error == beast::error::timeout || error == http::error::end_of_stream || error == asio::error::eof ||
@@ -199,19 +199,19 @@ class Knock : public std::enable_shared_from_this<Knock> {
                                     .hosts = request.count(http::field::host),
                                     .origins = request.count(http::field::origin),
                                     .upgrades = websocket::is_upgrade(request)},
-                                   door_.port, door_.site);
-    if (answer.status == kPageAnswer) return say(door_.site.page(view_of(request.target())));
+                                   server_.port, server_.site);
+    if (answer.status == kPageAnswer) return say(server_.site.page(view_of(request.target())));
     if (answer.status != kLiveAnswer) return refuse(answer);
-    if (door_.is_closed || door_.observers.size() >= kMostObservers) return refuse({503, "So many observe already.\n"});
-    const auto observer = std::make_shared<Observer>(door_, std::move(visit_), std::move(stream_));
-    door_.observers.push_back(observer);
-    ++door_.counts.observers;
-    door_.counts.most_at_a_time = std::max<std::uint64_t>(door_.counts.most_at_a_time, door_.observers.size());
+    if (server_.is_closed || server_.observers.size() >= kMostObservers) return refuse({503, "So many observe already.\n"});
+    const auto observer = std::make_shared<Observer>(server_, std::move(visit_), std::move(stream_));
+    server_.observers.push_back(observer);
+    ++server_.counts.observers;
+    server_.counts.most_at_a_time = std::max<std::uint64_t>(server_.counts.most_at_a_time, server_.observers.size());
     observer->begin(request);
   }
 
   void refuse(const WebAnswer& answer) {
-    ++door_.counts.requests_refused;
+    ++server_.counts.requests_refused;
     say({.text = std::string(answer.text), .status = answer.status});
   }
 
@@ -229,7 +229,7 @@ class Knock : public std::enable_shared_from_this<Knock> {
     response_.set("Referrer-Policy", "no-referrer");
     response_.body() = std::move(page.text);
     response_.prepare_payload();
-    stream_.expires_after(kPagePatience);
+    stream_.expires_after(kPageTimeout);
     http::async_write(stream_, response_, [self = shared_from_this()](const error_code&, std::size_t) { self->end(); });
   }
 
@@ -238,7 +238,7 @@ class Knock : public std::enable_shared_from_this<Knock> {
     stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
   }
 
-  WebDoor::Impl& door_;
+  WebServer::Impl& server_;
   Visit visit_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{kMostHeader};
@@ -248,7 +248,7 @@ class Knock : public std::enable_shared_from_this<Knock> {
 
 }  // namespace
 
-void WebDoor::Impl::accept() {
+void WebServer::Impl::accept() {
   acceptor.async_accept([this](const error_code& error, asio::ip::tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
     if (error) {  // of this machine: no descriptor is left
@@ -266,35 +266,35 @@ void WebDoor::Impl::accept() {
   });
 }
 
-void WebDoor::Impl::leave(const Observer* observer) {
+void WebServer::Impl::leave(const Observer* observer) {
   std::erase_if(observers, [observer](const auto& one) { return one.get() == observer; });
 }
 
-WebDoor::WebDoor(asio::io_context& context) : impl_(std::make_unique<Impl>(context)) {}
-WebDoor::~WebDoor() = default;
+WebServer::WebServer(asio::io_context& context) : impl_(std::make_unique<Impl>(context)) {}
+WebServer::~WebServer() = default;
 
-std::uint16_t WebDoor::open(std::uint16_t port) {
-  const asio::ip::tcp::endpoint place(asio::ip::address_v4::loopback(), port);
-  impl_->acceptor.open(place.protocol());
+std::uint16_t WebServer::open(std::uint16_t port) {
+  const asio::ip::tcp::endpoint local(asio::ip::address_v4::loopback(), port);
+  impl_->acceptor.open(local.protocol());
   impl_->acceptor.set_option(asio::socket_base::reuse_address(true));
-  impl_->acceptor.bind(place);
+  impl_->acceptor.bind(local);
   impl_->acceptor.listen();
   impl_->port = impl_->acceptor.local_endpoint().port();
   return impl_->port;
 }
 
-void WebDoor::serve(WebSite site) {
+void WebServer::serve(WebSite site) {
   impl_->site = std::move(site);
   impl_->accept();
 }
 
-bool WebDoor::has_observers() const noexcept { return !impl_->observers.empty(); }
+bool WebServer::has_observers() const noexcept { return !impl_->observers.empty(); }
 
-void WebDoor::send(const Outbox::Message& message, bool is_key, const std::string& hello) {
+void WebServer::send(const Outbox::Message& message, bool is_key, const std::string& hello) {
   for (const auto& observer : std::vector(impl_->observers)) observer->send(message, is_key, hello);
 }
 
-void WebDoor::close(const Outbox::Message& last) {
+void WebServer::close(const Outbox::Message& last) {
   impl_->is_closed = true;
   error_code ignored;
   impl_->acceptor.close(ignored);
@@ -302,6 +302,6 @@ void WebDoor::close(const Outbox::Message& last) {
   for (const auto& observer : std::vector(impl_->observers)) observer->close_after(last);
 }
 
-const WebDoor::Counts& WebDoor::counts() const noexcept { return impl_->counts; }
+const WebServer::Counts& WebServer::counts() const noexcept { return impl_->counts; }
 
 }  // namespace tactus::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/trace/csv_pace.h>
+#include <tactus/trace/csv_rate.h>
 
 #include <algorithm>
 #include <cmath>
@@ -45,10 +45,10 @@ struct Gap {
   double seconds;
 };
 
-class PaceFinder {
+class CsvRateEstimator {
  public:
-  PaceFinder(std::span<const CsvRow> rows, const CsvMapping& mapping, CsvNamedPlan& plan);
-  CsvResult<CsvPace> find();
+  CsvRateEstimator(std::span<const CsvRow> rows, const CsvMapping& mapping, CsvNamedPlan& plan);
+  CsvResult<CsvRate> find();
 
  private:
   bool find_groups();
@@ -70,12 +70,12 @@ class PaceFinder {
   std::vector<Gap> gaps_;            // 0 or longer
   double mean_ = 0, pause_ = 0;      // [s] gaps without pauses; what is a pause between groups
   double uncertain_ = 0;             // fraction of the rate of groups
-  CsvPace pace_;
+  CsvRate rate_;
 };
 
-PaceFinder::PaceFinder(std::span<const CsvRow> rows, const CsvMapping& mapping, CsvNamedPlan& plan)
+CsvRateEstimator::CsvRateEstimator(std::span<const CsvRow> rows, const CsvMapping& mapping, CsvNamedPlan& plan)
     : mapping_(mapping), plan_(plan), first_(&rows[0]) {
-  pace_.tick_rate = mapping.tick_rate;
+  rate_.tick_rate = mapping.tick_rate;
   std::map<std::uint32_t, std::size_t> counts;  // of the objects of a long table
   for (const CsvRow& row : rows) ++counts[row.values[0].channel];
   const auto busiest = std::ranges::max_element(counts, {}, [](const auto& c) { return c.second; })->first;
@@ -89,7 +89,7 @@ PaceFinder::PaceFinder(std::span<const CsvRow> rows, const CsvMapping& mapping, 
 
 /// Whether rows that are close in time are neither copies nor as close in truth: then an object moves on as far within groups as from
 /// one to the next.
-bool PaceFinder::are_samples() const {
+bool CsvRateEstimator::are_samples() const {
   std::size_t close = 0, close_differ = 0, far = 0, far_differ = 0;
   std::vector<double> close_steps, far_steps, close_gaps, far_gaps;  // [m], [s]
   for (const Gap& gap : gaps_) {
@@ -114,7 +114,7 @@ bool PaceFinder::are_samples() const {
 }
 
 /// Rows of whole groups over their time: the first and the last of a run may be cut.
-void PaceFinder::count_groups() {
+void CsvRateEstimator::count_groups() {
   struct Group {
     std::int64_t time;
     std::size_t first, rows;
@@ -144,19 +144,19 @@ void PaceFinder::count_groups() {
   }
   end_run();
   if (groups == 0 || length == 0) return;
-  pace_.period = length / rows;
-  pace_.apart = length / groups;
-  pace_.size = rows / groups;
-  const bool are_equal = largest == smallest && longest - shortest < 0.01 * pace_.apart;
-  uncertain_ = are_equal ? 5e-4 : pace_.size / rows + 5e-4;
+  rate_.period = length / rows;
+  rate_.apart = length / groups;
+  rate_.size = rows / groups;
+  const bool are_equal = largest == smallest && longest - shortest < 0.01 * rate_.apart;
+  uncertain_ = are_equal ? 5e-4 : rate_.size / rows + 5e-4;
   if (!first_run || plan_.object) return;
   std::vector<double> leads;
   for (const Group& group : *first_run)
-    leads.push_back(static_cast<double>(group.time - first_run->front().time) - pace_.period * static_cast<double>(group.first));
-  pace_.lead = median_of(leads);
+    leads.push_back(static_cast<double>(group.time - first_run->front().time) - rate_.period * static_cast<double>(group.first));
+  rate_.lead = median_of(leads);
 }
 
-bool PaceFinder::find_groups() {
+bool CsvRateEstimator::find_groups() {
   if (!mapping_.resample || rows_.size() < 8) return false;
   double all = 0, length = 0, count = 0;
   for (const Gap& gap : gaps_) all += gap.seconds / static_cast<double>(gaps_.size());
@@ -175,27 +175,27 @@ bool PaceFinder::find_groups() {
   if (fraction_below(kAlike * mean_) < 0.03 && fraction_below(kTogether * mean_) < 0.2) return false;  // a few times that repeat
   if (!are_samples()) return false;
   count_groups();
-  return pace_.period > 0;
+  return rate_.period > 0;
 }
 
-CsvResult<void> PaceFinder::take_groups() {
-  const double exact = 1e9 / pace_.period;
+CsvResult<void> CsvRateEstimator::take_groups() {
+  const double exact = 1e9 / rate_.period;
   if (!(exact <= 1.5 * kMaxTickRate)) return refuse(Errc::invalid_argument, "R-CSV-7", "", "Give --time-unit, or --tick-rate.");
-  if (pace_.tick_rate == 0) {
-    TACTUS_CHECK(ask(exact, pace_.period / 1e9));
-    pace_.tick_rate = std::max(1u, round_rate(exact, uncertain_));
+  if (rate_.tick_rate == 0) {
+    TACTUS_CHECK(ask(exact, rate_.period / 1e9));
+    rate_.tick_rate = std::max(1u, round_rate(exact, uncertain_));
   }
-  if (std::abs(pace_.tick_rate - exact) <= uncertain_ * exact) pace_.period = 1e9 / pace_.tick_rate;
-  const double off = pace_.period * pace_.tick_rate / 1e9;
-  pace_.is_off_grid = std::abs(off - std::round(off)) > 1e-6;
-  const std::string what = "several rows share a time or come in groups, of " + number_text(pace_.size, "%.4g") + " rows each " +
-                           number_text(pace_.apart / 1e9, "%.3g") + " s";
+  if (std::abs(rate_.tick_rate - exact) <= uncertain_ * exact) rate_.period = 1e9 / rate_.tick_rate;
+  const double off = rate_.period * rate_.tick_rate / 1e9;
+  rate_.is_off_grid = std::abs(off - std::round(off)) > 1e-6;
+  const std::string what = "several rows share a time or come in groups, of " + number_text(rate_.size, "%.4g") + " rows each " +
+                           number_text(rate_.apart / 1e9, "%.3g") + " s";
   if (mapping_.strict) return refuse(Errc::invalid, "R-CSV-5", what, "Do not give --strict: they are then spread evenly.");
-  plan_.notes.add("", what + ": spread evenly, " + number_text(1e9 / pace_.period, "%.6g") + " rows per second");
+  plan_.notes.add("", what + ": spread evenly, " + number_text(1e9 / rate_.period, "%.6g") + " rows per second");
   return {};
 }
 
-CsvResult<void> PaceFinder::ask(double exact, double median) const {
+CsvResult<void> CsvRateEstimator::ask(double exact, double median) const {
   const std::string apart = "rows " + number_text(median) + " s apart, " + number_text(exact, "%.4g") + " Hz";
   const std::string rate = std::to_string(std::max(1u, round_rate(exact, 5e-4)));
   const std::string counts =
@@ -214,7 +214,7 @@ CsvResult<void> PaceFinder::ask(double exact, double median) const {
   return {};
 }
 
-bool PaceFinder::is_off(double rate) const {
+bool CsvRateEstimator::is_off(double rate) const {
   const CsvRow* start = nullptr;
   return std::ranges::any_of(rows_, [&](const CsvRow* row) {
     if (start == nullptr || row->segment != start->segment) start = row;
@@ -224,7 +224,7 @@ bool PaceFinder::is_off(double rate) const {
 }
 
 /// Two estimates: the median of the gaps, and the count over the length without pauses.
-CsvResult<void> PaceFinder::take_gaps() {
+CsvResult<void> CsvRateEstimator::take_gaps() {
   std::vector<double> gaps;
   double length = 0, count = 0;
   for (const Gap& gap : gaps_)
@@ -245,54 +245,54 @@ CsvResult<void> PaceFinder::take_gaps() {
     const double rounded = std::max(1.0, std::round(by_median));
     const bool takes_median = rounded <= kMaxTickRate && !is_off(rounded) && by_count >= 0.5 * rounded;
     const double exact = takes_median ? rounded : by_count;
-    pace_.tick_rate =
+    rate_.tick_rate =
         takes_median ? static_cast<std::uint32_t>(rounded) : std::max(1u, round_rate(exact, 1.0 / std::max(count, 1.0) + 5e-4));
     if (std::abs(by_median - by_count) > 0.1 * by_count && !gaps.empty())
       plan_.notes.add("", "the median gap says " + number_text(by_median, "%.4g") + " Hz, the number of rows over their time " +
-                              number_text(by_count, "%.4g") + " Hz: " + std::to_string(pace_.tick_rate) +
+                              number_text(by_count, "%.4g") + " Hz: " + std::to_string(rate_.tick_rate) +
                               " Hz is taken; --tick-rate says otherwise");
     TACTUS_CHECK(ask(exact, median));
   }
-  pace_.is_off_grid = mapping_.resample && is_off(pace_.tick_rate);
+  rate_.is_off_grid = mapping_.resample && is_off(rate_.tick_rate);
   return {};
 }
 
-CsvResult<CsvPace> PaceFinder::find() {
+CsvResult<CsvRate> CsvRateEstimator::find() {
   if (find_groups()) {
     TACTUS_CHECK(take_groups());
   } else {
     TACTUS_CHECK(take_gaps());
   }
-  if (pace_.tick_rate > kMaxTickRate)
+  if (rate_.tick_rate > kMaxTickRate)
     return refuse(Errc::invalid_argument, "R-CSV-7", "", "Give --tick-rate HZ, at most 1000000.");
-  if (pace_.is_off_grid)
+  if (rate_.is_off_grid)
     plan_.notes.add(
-        "", "times lie on no grid: resampled at " + std::to_string(pace_.tick_rate) + " Hz (--no-resample refuses such tables)");
-  return pace_;
+        "", "times lie on no grid: resampled at " + std::to_string(rate_.tick_rate) + " Hz (--no-resample refuses such tables)");
+  return rate_;
 }
 
 }  // namespace
 
-CsvResult<CsvPace> find_pace(std::span<const CsvRow> rows, const CsvMapping& mapping, CsvNamedPlan& plan) {
-  return PaceFinder(rows, mapping, plan).find();
+CsvResult<CsvRate> estimate_rate(std::span<const CsvRow> rows, const CsvMapping& mapping, CsvNamedPlan& plan) {
+  return CsvRateEstimator(rows, mapping, plan).find();
 }
 
 std::int64_t EvenTimes::time_of(const CsvRow& row, std::size_t object) {
   const auto [found, is_new] = last_.try_emplace(object);
   Last& last = found->second;
   if (is_new || last.segment != row.segment) {
-    last = {.segment = row.segment, .first = row.time, .time = row.time, .even = std::exchange(pace_.lead, 0), .correction = 0};
+    last = {.segment = row.segment, .first = row.time, .time = row.time, .even = std::exchange(rate_.lead, 0), .correction = 0};
     return row.time + std::llround(last.even);
   }
   const auto gap = static_cast<double>(row.time - last.time), now = static_cast<double>(row.time - last.first);
   last.time = row.time;
-  const double even = last.even + pace_.period + last.correction;
-  const bool is_after_pause = gap > 3 * pace_.apart + pace_.period && now > even;
+  const double even = last.even + rate_.period + last.correction;
+  const bool is_after_pause = gap > 3 * rate_.apart + rate_.period && now > even;
   last.even = is_after_pause ? now : even;
-  if (gap < kTogether * pace_.period) return last.first + std::llround(last.even);
+  if (gap < kTogether * rate_.period) return last.first + std::llround(last.even);
   // a group begins: what the even times are off by more than a group is made good over the next 32
   const double off = now - last.even;
-  last.correction = std::abs(off) <= pace_.apart ? 0 : std::clamp(off / (32 * pace_.size), -0.5 * pace_.period, pace_.period);
+  last.correction = std::abs(off) <= rate_.apart ? 0 : std::clamp(off / (32 * rate_.size), -0.5 * rate_.period, rate_.period);
   return last.first + std::llround(last.even);
 }
 

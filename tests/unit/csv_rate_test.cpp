@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// When the rows of a table were, and what their rotations and devices are: motions that are known, written as recorders write them.
-#include <tactus/trace/csv_pace.h>
+#include <tactus/trace/csv_rate.h>
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ void expect_even(const Imported& outcome, std::uint32_t rate, double error) {
   }
 }
 
-TEST(CsvPace, RowsThatComeInBurstsAreSpreadEvenly) {
+TEST(CsvRate, RowsThatComeInBurstsAreSpreadEvenly) {
   const auto burst = [](int i) { return i / 10 * 0.01; };
   const Imported equal = import(moving(300, 1000, burst), timed());
   expect_even(equal, 1000, 1e-9);
@@ -62,7 +62,7 @@ TEST(CsvPace, RowsThatComeInBurstsAreSpreadEvenly) {
 }
 
 /// Where the limits are: what is 0.4 s apart came in groups, what is 0.6 s apart are pauses; so with rates above 50 kHz.
-TEST(CsvPace, LimitsOfGroupsAndRates) {
+TEST(CsvRate, LimitsOfGroupsAndRates) {
   for (const double seconds : {0.4, 0.6}) {
     const auto time = [=](int i) { return i / 10 * seconds + i % 10 * 1e-4; };
     CsvMapping mapping = timed();
@@ -80,7 +80,7 @@ TEST(CsvPace, LimitsOfGroupsAndRates) {
   }
 }
 
-TEST(CsvPace, AClockThatDiffersFromTheRateIsFollowed) {
+TEST(CsvRate, AClockThatDiffersFromTheRateIsFollowed) {
   const auto time = [](int i) { return i / 10 * 0.01001; };  // 999 Hz, taken as 999
   const Imported outcome = import(moving(60000, 1000 / 1.001, time), timed());
   ASSERT_EQ(outcome.rule, "");
@@ -95,7 +95,7 @@ TEST(CsvPace, AClockThatDiffersFromTheRateIsFollowed) {
   EXPECT_NEAR(static_cast<double>(paused.frames.size()), 2000, 25);
 }
 
-TEST(CsvPace, CopiesAndTruePausesAreNoBursts) {
+TEST(CsvRate, CopiesAndTruePausesAreNoBursts) {
   const auto copies = [](int i) { return i / 2 * 0.01; };
   std::string text = "t,x,y,z\n";
   for (int i = 0; i < 200; ++i) text += std::to_string(copies(i)) + ',' + std::to_string(i / 2) + ",0,0\n";
@@ -114,7 +114,7 @@ TEST(CsvPace, CopiesAndTruePausesAreNoBursts) {
 }
 
 /// Of a mouse or a touch screen, which report when something happened.
-TEST(CsvPace, EventsAreNoBursts) {
+TEST(CsvRate, EventsAreNoBursts) {
   std::ostringstream text;
   text << "t,x,y,z\n";
   std::uint32_t random = 1;
@@ -132,7 +132,7 @@ TEST(CsvPace, EventsAreNoBursts) {
                 static_cast<double>(outcome.frames[i].tick) / outcome.info.tick_rate, 1e-3);
 }
 
-TEST(CsvPace, StrictAndNoResampleRefuseBursts) {
+TEST(CsvRate, StrictAndNoResampleRefuseBursts) {
   const std::string text = moving(300, 1000, [](int i) { return i / 10 * 0.01; });
   CsvMapping mapping = timed();
   mapping.strict = true;
@@ -142,7 +142,7 @@ TEST(CsvPace, StrictAndNoResampleRefuseBursts) {
   EXPECT_EQ(import(text, mapping).rule, "R-CSV-5");
 }
 
-TEST(CsvPace, RatesThatNobodyWouldRecordAreAskedAbout) {
+TEST(CsvRate, RatesThatNobodyWouldRecordAreAskedAbout) {
   const auto excel = [](int i) { return 45413.5 + i * 0.01 / 86400; };
   std::ostringstream text;
   text << "t,x,y,z\n";
@@ -161,7 +161,7 @@ TEST(CsvPace, RatesThatNobodyWouldRecordAreAskedAbout) {
 
 // ==== times in two columns ====
 
-TEST(CsvPace, DatesAndClocksAndSecondsAndNanosecondsAreOneTime) {
+TEST(CsvRate, DatesAndClocksAndSecondsAndNanosecondsAreOneTime) {
   const auto check = [](std::string_view names, const std::function<std::string(int)>& time_of, const char* time) {
     std::string text = std::string(names) + ",x,y,z\n";
     for (int i = 0; i < 40; ++i) text += time_of(i) + ',' + std::to_string(i) + ",0,0\n";
@@ -196,7 +196,7 @@ TEST(CsvPace, DatesAndClocksAndSecondsAndNanosecondsAreOneTime) {
       "d,t", [&](int i) { return night(i, "31-Dec-2023", "01-Jan-2024"); }, "d,t");
 }
 
-TEST(CsvPace, ADateThatCanBeTwoIsAskedAbout) {
+TEST(CsvRate, ADateThatCanBeTwoIsAskedAbout) {
   const std::string_view text =
       "d,t,x,y,z\n5/6/2024,1:00:00.00 PM,1,0,0\n5/6/2024,1:00:00.01 PM,2,0,0\n5/6/2024,1:00:00.02 PM,3,0,0\n";
   CsvMapping mapping = timed();
@@ -213,7 +213,7 @@ TEST(CsvPace, ADateThatCanBeTwoIsAskedAbout) {
   }
 }
 
-TEST(CsvPace, AFractionThatIsAWholeTimeIsRefused) {
+TEST(CsvRate, AFractionThatIsAWholeTimeIsRefused) {
   CsvMapping mapping = timed();
   mapping.time = "sec";
   const Imported outcome = import("sec,nanosec,x,y,z\n0,0,1,0,0\n0,500000000,2,0,0\n1,1000000000,3,0,0\n", mapping);
@@ -226,7 +226,7 @@ TEST(CsvPace, AFractionThatIsAWholeTimeIsRefused) {
 
 // ==== recordings put together ====
 
-TEST(CsvPace, WhereTheTimeFallsTheNextRecordingBeginsIfItIsSaid) {
+TEST(CsvRate, WhereTheTimeFallsTheNextRecordingBeginsIfItIsSaid) {
   std::string one = "t,x,y,z\n", text;
   for (int i = 0; i < 200; ++i) one += std::to_string(i / 100.0) + ',' + std::to_string(i) + ",0,0\n";
   text = one + "\xEF\xBB\xBF" + one + one;
@@ -244,7 +244,7 @@ TEST(CsvPace, WhereTheTimeFallsTheNextRecordingBeginsIfItIsSaid) {
                                                          "a line of names comes again and is left out x2"}));
 }
 
-TEST(CsvPace, RowsInReverseAreNamedAsThat) {
+TEST(CsvRate, RowsInReverseAreNamedAsThat) {
   std::string text = "t,x,y,z\n";
   for (int i = 199; i >= 0; --i) text += std::to_string(i / 100.0) + ',' + std::to_string(i) + ",0,0\n";
   const Imported outcome = import(text, timed());
@@ -260,7 +260,7 @@ Quat turned(double time, double begin = 0) {
   return {std::cos(half), 0, 0, std::sin(half)};
 }
 
-TEST(CsvPace, TheOrderOfUnnamedQuaternionsFollowsFromTheFirst) {
+TEST(CsvRate, TheOrderOfUnnamedQuaternionsFollowsFromTheFirst) {
   const auto table = [](const char* names, bool is_w_first, double begin) {
     std::ostringstream text;
     text.precision(17);
@@ -297,7 +297,7 @@ TEST(CsvPace, TheOrderOfUnnamedQuaternionsFollowsFromTheFirst) {
   EXPECT_EQ(check("qx,qy,qz,scalar", {"qx", "qy", "qz", "scalar"}, false, 2, by_names), "right");
 }
 
-TEST(CsvPace, RotationVectorsAndMatrices) {
+TEST(CsvRate, RotationVectorsAndMatrices) {
   std::ostringstream text;
   text.precision(17);
   text << "t,x,y,z,rx [deg],ry [deg],rz [deg],m00,m01,m02,m10,m11,m12,m20,m21,m22\n";
@@ -324,7 +324,7 @@ TEST(CsvPace, RotationVectorsAndMatrices) {
   EXPECT_EQ(notes_of(import(stretched, matrix)).back(), "a sample is interpolated, over at most 0 s");
 }
 
-TEST(CsvPace, TheRotationOfADeviceIsKept) {
+TEST(CsvRate, TheRotationOfADeviceIsKept) {
   std::string text = "t,px,py,pz,hw,hx,hy,hz\n";
   for (int i = 0; i < 20; ++i) text += std::to_string(i / 100.0) + ",1,2,3,0.6,0,0,0.8\n";
   CsvMapping mapping = timed();
@@ -348,7 +348,7 @@ TEST(CsvPace, TheRotationOfADeviceIsKept) {
 
 // ==== what is counted and kept ====
 
-TEST(CsvPace, HeldSamplesAreCounted) {
+TEST(CsvRate, HeldSamplesAreCounted) {
   std::string text = "t,ax,ay,az,bx,by,bz\n";
   for (int i = 0; i < 100; ++i) {
     const bool is_lost = i >= 40 && i < 70;
@@ -369,7 +369,7 @@ TEST(CsvPace, HeldSamplesAreCounted) {
             std::vector<std::string>{"a sample is held, as others of the table go on: none for more than 0.1 s (--gap) x30"});
 }
 
-TEST(CsvPace, ALastLineWithoutAnEndIsTakenIfItIsSaid) {
+TEST(CsvRate, ALastLineWithoutAnEndIsTakenIfItIsSaid) {
   const std::string_view text = "x,y,z\n1,0,0\n2,0,0\n3,0,4";
   EXPECT_EQ(import(text, xyz()).frames.size(), 2u);
   CsvMapping mapping = xyz();
@@ -380,7 +380,7 @@ TEST(CsvPace, ALastLineWithoutAnEndIsTakenIfItIsSaid) {
   EXPECT_TRUE(notes_of(outcome).empty());
 }
 
-TEST(CsvPace, ADeclaredContactIsInTheTrace) {
+TEST(CsvRate, ADeclaredContactIsInTheTrace) {
   std::string text = "t,x,y,z,fx,fy,fz\n";
   for (int i = 0; i < 20; ++i) text += std::to_string(i / 100.0) + ",1,2,3,0,0," + (i < 10 ? "2\n" : "0\n");
   CsvMapping mapping = timed();
