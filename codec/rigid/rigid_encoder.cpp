@@ -62,7 +62,7 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, co
       truth_(truth),
       work_(work),
       awake_(scene.objects.size()) {
-  if (predictor_.knows_device()) driven_.emplace(scene, *device);
+  if (predictor_.has_device_path()) driven_.emplace(scene, *device);
   if (truth.past() != nullptr) choice_.emplace(scene, driven_ ? driven_->past : *truth.past(), device);
   pending_.reserve(scene.moving().size());
   before_.reserve(scene.moving().size());

@@ -52,11 +52,7 @@ TEST(DevicePath, PacketsActFromTheirTickOn) {
   EXPECT_EQ(path.x(18), 50);
 }
 
-<<<<<<< ours
-TEST(DevicePath, ReorderedPacketsTakeTheirPlace) {
-=======
 TEST(DevicePath, OvertakenPacketsTakeTheirSlot) {
->>>>>>> theirs
   Path path;
   path.shift(0, 0);
   path.put(1, 1, 0.001);
@@ -107,11 +103,7 @@ TEST(DevicePath, OlderTickMappingsAndPacketsAreForgotten) {
   EXPECT_EQ(path.state_at(1500)->tick, 1500) << "a tick mapping of the past is not taken";
 }
 
-<<<<<<< ours
-/// Older than all that is kept: there is no place for it.
-=======
 /// Overtaken by all that is kept: there is no slot for it.
->>>>>>> theirs
 TEST(DevicePath, TheOldestOfAFullPathIsNotTaken) {
   Path path;
   path.shift(0, 0);
