@@ -40,7 +40,7 @@ SYSTEM = {
     "cli/commands/cmd_lab.cpp": "scripts in the place of the program, or fed by it",
     "cli/commands/sim_check.cpp": "a finer run beside the first", "cli/commands/sim_check.h": "its process",
     "cli/commands/cmd_link.cpp": "to wait for datagrams of many sockets",
-    "cli/live/background_work.cpp": "a thread that gives way to others",
+    "cli/live/background_work.cpp": "a thread that gives loop to others",
     "cli/live/device_loop.cpp": "single keys",
     "cli/live/device_loop.h": "single keys",
     "cli/live/notify.cpp": "the manager of services",
@@ -184,8 +184,8 @@ def check_layers(root):
 
 
 def cycles(edges):
-    """Each group of nodes that lead to one another, as one way through it that ends where it began."""
-    def way(start):
+    """Each group of nodes that lead to one another, as one loop through it that ends where it began."""
+    def loop(start):
         came, todo = {}, [start]
         while todo:
             node = todo.pop(0)
@@ -202,7 +202,7 @@ def cycles(edges):
 
     seen = set()
     for node in sorted(edges):
-        found = None if node in seen else way(node)
+        found = None if node in seen else loop(node)
         if found:
             seen.update(found)
             yield found
@@ -222,9 +222,9 @@ def check_cycles(root):
                     yield f"{name}: includes {other}, which is above the folders of codec/"
                 elif there != here:
                     edges.setdefault(here, {}).setdefault(there, f"{name} includes {other}")
-        for way in cycles(edges):
-            examples = "; ".join(edges[a][b] for a, b in zip(way, way[1:]))
-            yield f"{' -> '.join(way)}: a cycle of folders: {examples}"
+        for loop in cycles(edges):
+            examples = "; ".join(edges[a][b] for a, b in zip(loop, loop[1:]))
+            yield f"{' -> '.join(loop)}: a cycle of folders: {examples}"
 
 
 def check_sides(root):

@@ -33,8 +33,8 @@ std::int64_t left_after(std::int64_t shapes) noexcept {
 
 KnownDevice::KnownDevice(std::shared_ptr<const DevicePath> known)
     : path(std::move(known)),
-      make([](const Scene& scene, const DeformableObject& object, const DevicePath& way) -> std::unique_ptr<FollowedShape> {
-        return std::make_unique<DrivenShape>(scene, object, way);
+      make([](const Scene& scene, const DeformableObject& object, const DevicePath& device) -> std::unique_ptr<FollowedShape> {
+        return std::make_unique<DrivenShape>(scene, object, device);
       }) {}
 
 DrivenShape::DrivenShape(const Scene& scene, const DeformableObject& object, const DevicePath& path)

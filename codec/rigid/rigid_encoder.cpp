@@ -447,7 +447,7 @@ Result<Payload> RigidEncoder::code_all(const EncodeRequest<RigidStates>& request
 // ==== what is shared ====
 
 /// Not where a device drives objects: no other receiver has it.
-bool RigidEncoder::shares() const noexcept { return work_ != nullptr && !driven_ && pending_.size() <= RigidWork::kMostUpdates; }
+bool RigidEncoder::uses_common_work() const noexcept { return work_ != nullptr && !driven_ && pending_.size() <= RigidWork::kMostUpdates; }
 
 /// All that the payload depends on.
 void RigidEncoder::make_key(const EncodeRequest<RigidStates>& request) noexcept {
@@ -482,7 +482,7 @@ Result<Payload> RigidEncoder::encode(const EncodeRequest<RigidStates>& request, 
     sleep();
     return Payload{};
   }
-  if (!shares()) {
+  if (!uses_common_work()) {
     const auto alone = code_all(request, out);
     for (Pending& update : pending_) update.after.version = work_ != nullptr ? work_->next_version() : 0;
     return alone;

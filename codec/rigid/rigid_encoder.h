@@ -116,7 +116,7 @@ class RigidEncoder {
   Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction, const RigidState& signalled) const noexcept;
   Result<CodedUpdate> code(Pending& update, const EncodeRequest<RigidStates>& request) const noexcept;
   Result<Payload> code_all(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
-  bool shares() const noexcept;
+  bool uses_common_work() const noexcept;
   void make_key(const EncodeRequest<RigidStates>& request) noexcept;
   Payload copy(const RigidWork::Body& body, std::span<std::uint8_t> out) noexcept;
 

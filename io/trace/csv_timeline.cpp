@@ -33,7 +33,7 @@ Diagnostic CsvTimeline::mistake(Errc code, RuleName rule, std::uint64_t line, st
 
 CsvResult<void> CsvTimeline::add(CsvRow row) {
   budget_.earn(row.bytes);
-  if (!plan_.time) return place(std::move(row));
+  if (!plan_.time) return deliver(std::move(row));
   falls_ = !last_time_ || row.time >= *last_time_ ? 0 : falls_ + 1;
   if (mapping_.restarts) mark_restart(row);
   last_time_ = row.time;
@@ -89,7 +89,7 @@ CsvResult<void> CsvTimeline::release() {
   window_.pop_front();
   released_ = row.time;
   released_line_ = row.line;
-  if (writer_) return place(std::move(row));
+  if (writer_) return deliver(std::move(row));
   waiting_.push_back(std::move(row));
   return waiting_.size() < kRowsForRate ? CsvResult<void>() : start();
 }
@@ -157,7 +157,7 @@ CsvResult<void> CsvTimeline::start() {
     plan_.notes.add("", "time begins at 0 in the trace; the first row is of " + date_text(rows_.first_date()));
   frame_.objects.resize(plan_.info.objects.size());
   frame_.users.resize(plan_.info.users.size());
-  for (CsvRow& row : waiting_) TACTUS_CHECK(place(std::move(row)));
+  for (CsvRow& row : waiting_) TACTUS_CHECK(deliver(std::move(row)));
   waiting_ = {};
   return {};
 }
@@ -202,7 +202,7 @@ CsvResult<void> CsvTimeline::end_segment() {
 }
 
 /// Of a row that is in order.
-CsvResult<void> CsvTimeline::place(CsvRow row) {
+CsvResult<void> CsvTimeline::deliver(CsvRow row) {
   if (!writer_) {
     if (!waiting_.empty() || plan_.time) return tl::unexpected(mistake(Errc::internal, "R-CSV-7", row.line, ""));
     TACTUS_CHECK(start());

@@ -38,7 +38,7 @@ class CsvTimeline {
   std::string restart_suffix() const { return restarts_ == 0 ? "" : '#' + std::to_string(restarts_); }
   Diagnostic out_of_order(const CsvRow& row) const;
   CsvResult<void> release();
-  CsvResult<void> place(CsvRow row);
+  CsvResult<void> deliver(CsvRow row);
   CsvResult<void> start();
   CsvResult<void> find_rate();
   CsvResult<void> take_contacts();

@@ -95,7 +95,7 @@ class RosAssembler final : public FrameAssembler {
   Result<bool> take(mcap::Reader& mcap);
   Result<bool> skip(mcap::Reader& mcap, std::uint64_t time);
   void fill(TraceFrame& out);
-  RigidSample place(const Object& object);
+  RigidSample sample_of(const Object& object);
   UserSample press(const User& user, const TraceFrame& out);
 
   ReadOptions options_;
@@ -359,11 +359,11 @@ void RosAssembler::fill(TraceFrame& out) {
   frames_->move();
   out = {};
   out.tick = tick_;
-  for (const Object& object : objects_) out.objects.push_back(place(object));
+  for (const Object& object : objects_) out.objects.push_back(sample_of(object));
   for (const User& user : users_) out.users.push_back(press(user, out));
 }
 
-RigidSample RosAssembler::place(const Object& object) {
+RigidSample RosAssembler::sample_of(const Object& object) {
   const RosSource& source = samples_.sources()[object.source];
   if (source.kind == Kind::link) return frames_->of_link(object.source);
   RosTrack& track = tracks_[object.source];

@@ -30,7 +30,7 @@ class SampledMass {
   void step(double force) noexcept;
   double position() const noexcept { return x_; }
   double velocity() const noexcept { return v_; }
-  void place(double x, double v) noexcept { x_ = x, v_ = v; }
+  void move_to(double x, double v) noexcept { x_ = x, v_ = v; }
 
  private:
   Transition transition_;

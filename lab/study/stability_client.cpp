@@ -67,7 +67,7 @@ Outcome interact(const Setting& setting) {
   const double yield = user.server_stiffness / (user.server_stiffness + setting.object_stiffness);
   const double rest = kPress / (user.client_stiffness * (1 - yield));
   SampledMass hand(setting.hand, kTick);
-  hand.place(kStart, 0);
+  hand.move_to(kStart, 0);
   PassivityObserver port;
   Outcome out{.series = {.name = setting.panel, .columns = {"t [s]", "f [N]", "E [mJ]"}}};
   double early = 0, late = 0, last = 0;  // speeds

@@ -41,7 +41,7 @@ bool is_passive(const Wall& wall, double device_damping, double period, Motion m
 
 bool is_stable(const Wall& wall, const Impedance& held, double period) {
   SampledMass device(held, period);
-  device.place(1e-3, 0);
+  device.move_to(1e-3, 0);
   double before = device.position(), early = 0, late = 0;
   for (int n = 0; n < kSamples; ++n) {
     const double x = device.position();

@@ -171,7 +171,7 @@ def press_both(delays, compensation=None):
     return press(8.5, [(presses, r if delays else 0) for presses, r in zip(PRESSES, ROUND_TRIPS)], compensation)
 
 
-def fraction_felt(force, reference):
+def fraction_outside(force, reference):
     """[%] of the ticks in contact in which the force is further than c from the reference of the same tick."""
     contact = [(f, r) for f, r in zip(force, reference) if f != 0 or r != 0]
     return 100 * sum(abs(f - r) > WEBER * r for f, r in contact) / len(contact) if contact else 0
@@ -185,7 +185,7 @@ def two_users(options):
         server = reference[user]["server_N"][begin:end]
         clients = [run[user]["client_N"][begin:end] for run in runs]
         out.add(f"{name}: peak over that of the server", "%", *[percent_over(max(client), max(server)) for client in clients])
-        out.add(f"{name}: time outside +-10 %", "%", *[fraction_felt(client, server) for client in clients])
+        out.add(f"{name}: time outside +-10 %", "%", *[fraction_outside(client, server) for client in clients])
     columns = [reference[user]["server_N"] if run is None else run[user]["client_N"] for user in (0, 1) for run in (None, *runs)]
     head = ["time_s"] + [f"{of}_{user}_N" for user in (1, 2) for of in ("server", "without", "lambda_0.01", "lambda_0.1")]
     rows = [[six(TICK * i), *map(six, row)] for i, row in enumerate(zip(*columns))]

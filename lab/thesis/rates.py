@@ -181,7 +181,7 @@ def measured(shown, predicted):
     return {"seconds": shown["seconds"], "packets_per_s": traffic["packets_per_s"], "payload_bit_per_s": traffic["payload"]["bit_per_s"],
             "bytes_per_update": traffic["payload"]["bytes_per_update"],
             "visual_violations": predicted["position_m"]["over"] + predicted["rotation_rad"]["over"],
-            "fraction_felt_over_jnd": error["rendered_force_perception_N"]["over"] / shown["ticks"],
+            "fraction_over_jnd": error["rendered_force_perception_N"]["over"] / shown["ticks"],
             "fraction_in_contact": contact["samples"] / shown["ticks"],
             "haptic_violations": predicted.get("contact_force_N", {"over": 0})["over"],
             "fraction_shown_over": contact.get("fraction_over"), "worst_shown_ratio": contact.get("worst_ratio")}
@@ -194,7 +194,7 @@ def summarise(of, runs):
     for name in ("payload_bit_per_s", "bytes_per_update"):
         out[name] = mean(column(name))
     out["visual_violations"] = sum(column("visual_violations"))
-    for name in ("fraction_felt_over_jnd", "fraction_in_contact"):
+    for name in ("fraction_over_jnd", "fraction_in_contact"):
         out[name] = mean(column(name))
     if of["rule"] != "off":
         out |= {"haptic_violations": sum(column("haptic_violations")), "fraction_shown_over": mean(column("fraction_shown_over")),
@@ -272,7 +272,7 @@ def settings_text(options, report, rows):
                       f"{fast['standard_deviation']:.1f}", thesis, f"{slow['payload_bit_per_s']:.0f}", f"{slow['bytes_per_update']:.2f}",
                       slow["haptic_violations"] + fast["haptic_violations"] if has_rule else "-",
                       slow["visual_violations"] + fast["visual_violations"], percent(slow["fraction_shown_over"]) if has_rule else "-",
-                      f"{slow['worst_shown_ratio']:.2f}" if has_rule else "-", percent(slow["fraction_felt_over_jnd"])])
+                      f"{slow['worst_shown_ratio']:.2f}" if has_rule else "-", percent(slow["fraction_over_jnd"])])
     orders = [f"S4 > S8 > S18 > S30 {what} interpolation, {hand}: {order_of(of, names)}" for hand, of in
               (("the scene's hand", rows["scene_hand"]), ("the faster hand", rows["faster_hand"]))
               for what, names in (("without", WITHOUT), ("with", WITH))]

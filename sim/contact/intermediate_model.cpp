@@ -63,12 +63,12 @@ void IntermediateModel::cut_around(std::uint32_t triangle) noexcept {
   }
 }
 
-ProxyTouch IntermediateModel::place(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+ProxyTouch IntermediateModel::move_to(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   std::copy(vertices.begin(), vertices.end(), shown_.begin());
   from_ = to_ = shown_;
   reach_ = 0;
   still_ = 0;
-  touch_ = proxy_.place(probe, inside_, vertices, tree);
+  touch_ = proxy_.move_to(probe, inside_, vertices, tree);
   if (const auto nearest = tree.closest(proxy_.position(), vertices)) cut_around(nearest->triangle);
   tick_ = 0;
   return touch_;
@@ -98,7 +98,7 @@ void IntermediateModel::recut(std::span<const Vec3> vertices, const AabbTree& tr
     cut_around(touch_.triangle);
   } else if (const auto nearest = tree.closest(proxy_.position(), vertices)) {
     cut_around(nearest->triangle);
-    touch_ = proxy_.place(proxy_.position(), inside_, shown_, tree_);
+    touch_ = proxy_.move_to(proxy_.position(), inside_, shown_, tree_);
   }
   double farthest2 = 0;
   for (const std::uint32_t v : moving_) farthest2 = std::max(farthest2, dot(to_[v] - from_[v], to_[v] - from_[v]));

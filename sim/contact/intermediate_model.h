@@ -32,7 +32,7 @@ class IntermediateModel {
   IntermediateModel(const TriMesh& mesh, const MeshTopology& topology, const IntermediateModelOptions& options);
 
   /// Place the probe without history, on the mesh as it is now.   as update()
-  ProxyTouch place(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  ProxyTouch move_to(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   /// Take over a deformation step: cut out around the proxy. The shown surface does not change. A free proxy that is now inside
   /// the object, because it moved beyond the previous cut-out, is put on the surface.
   /// in   vertices  of the whole mesh; the tree is fitted to them
@@ -40,7 +40,7 @@ class IntermediateModel {
   void update(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   /// update() for a deformation step that moved nothing.   time O(cut-out) if the proxy has moved on, else O(log n)
   void update_at_rest(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
-  /// One tick of haptic rendering.   pre  place()   time O(cut-out), about 2 us for three rings; no allocation
+  /// One tick of haptic rendering.   pre  move_to()   time O(cut-out), about 2 us for three rings; no allocation
   ProxyTouch move(const Vec3& probe) noexcept;
 
   std::span<const std::uint32_t> triangles() const noexcept { return cut_; }  ///< of the cut-out, ring by ring

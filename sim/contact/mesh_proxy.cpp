@@ -248,7 +248,7 @@ ProxyTouch MeshProxy::move(const Vec3& probe, std::span<const Vec3> vertices, co
   return settle(is_finite(probe) ? probe : probe_, vertices, tree);
 }
 
-ProxyTouch MeshProxy::place(const Vec3& probe, const InsideTest& inside, std::span<const Vec3> vertices,
+ProxyTouch MeshProxy::move_to(const Vec3& probe, const InsideTest& inside, std::span<const Vec3> vertices,
                             const AabbTree& tree) noexcept {
   if (!is_finite(probe)) return move(probe_, vertices, tree);
   centre_ = probe;

@@ -50,7 +50,7 @@ class MeshProxy {
   MeshProxy(const MeshProxyOptions& options, double extent) noexcept;
 
   /// Place the probe without history. Inside the mesh or too close to it, the closest point of the surface holds it.
-  ProxyTouch place(const Vec3& probe, const InsideTest& inside, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  ProxyTouch move_to(const Vec3& probe, const InsideTest& inside, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   /// Move the probe. The first call places it, on whichever side of the surface that is. A position that is not finite is
   /// ignored.
   /// in   vertices  where they are now; the tree is fitted to them. All in the frame of the mesh

@@ -39,8 +39,8 @@ class SurfaceProxy {
       : surface_(std::move(surface)), proxy_({.friction = friction}, surface_->extent()) {}
 
   /// Put the probe there without history; inside the mesh the closest point holds it.
-  void place(const Vec3& probe) noexcept {
-    touch_ = proxy_.place(probe, surface_->inside(), surface_->vertices(), surface_->tree());
+  void move_to(const Vec3& probe) noexcept {
+    touch_ = proxy_.move_to(probe, surface_->inside(), surface_->vertices(), surface_->tree());
   }
   /// Move the probe there.
   void move(const Vec3& probe) noexcept { touch_ = proxy_.move(probe, surface_->vertices(), surface_->tree()); }

@@ -65,9 +65,9 @@ DeformableProbes::DeformableProbes(std::span<const TouchedSurface> objects, std:
 ProxyTouch DeformableProbes::move(User& user, std::uint32_t object, const SeenSurface& seen, const Vec3& device) noexcept {
   auto& [direct, cut_out, body] = user.proxies[object];
   if (body) return body->move(device, seen);
-  if (cut_out) return user.placed ? cut_out->move(device) : cut_out->place(device, seen.vertices, seen.tree);
+  if (cut_out) return user.placed ? cut_out->move(device) : cut_out->move_to(device, seen.vertices, seen.tree);
   return user.placed ? direct.move(device, seen.vertices, seen.tree)
-                     : direct.place(device, seen.inside, seen.vertices, seen.tree);
+                     : direct.move_to(device, seen.inside, seen.vertices, seen.tree);
 }
 
 Touch DeformableProbes::result(std::optional<std::uint32_t> object, const ProxyTouch& proxy_touch, const Vec3& device) const noexcept {

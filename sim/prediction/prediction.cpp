@@ -211,7 +211,7 @@ void Prediction::move(std::uint32_t object, const Vec3& by, const Vec3& turn_by)
   Pose& sum = corrections_[object];
   sum = {sum.position + displacement, normalised(rotation * sum.rotation)};
   poses_[object] = {own.position + displacement, normalised(rotation * own.rotation)};
-  own_->rigid().place(object, poses_[object]);
+  own_->rigid().move_to(object, poses_[object]);
 }
 
 void Prediction::correct_rigid(std::uint32_t object, std::int64_t then) noexcept {

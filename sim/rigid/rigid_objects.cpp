@@ -86,8 +86,8 @@ void RigidObjects::push(std::size_t user, double fraction) noexcept {
   if (!loads_.empty()) pushing_[touch.contact.object * touches_.size() + user] = force;
 }
 
-void RigidObjects::place(std::uint32_t object, const Pose& pose) noexcept {
-  world_.place(object, pose);
+void RigidObjects::move_to(std::uint32_t object, const Pose& pose) noexcept {
+  world_.move_to(object, pose);
   for (RigidProbe& probe : probes_) probe.attend(object, poses_[object]);
   poses_[object] = pose;
 }

@@ -68,7 +68,7 @@ class RigidObjects final : public Simulated {
   tl::expected<void, Diagnostic> step() override;
 
   /// Put an object elsewhere, as of this tick.   no allocation
-  void place(std::uint32_t object, const Pose& pose) noexcept;
+  void move_to(std::uint32_t object, const Pose& pose) noexcept;
   /// Push an object at its centre with a force [N] in this tick.   no allocation
   void push_centre(std::uint32_t object, const Vec3& force) noexcept { world_.push(object, force, poses_[object].position); }
 

@@ -35,7 +35,7 @@ Vec3 BoxProxy::normal() const noexcept {
   return normal;
 }
 
-void BoxProxy::place(const Vec3& probe) noexcept {
+void BoxProxy::move_to(const Vec3& probe) noexcept {
   proxy_ = probe;
   face_.reset();
   double nearest = -std::numeric_limits<double>::infinity();
@@ -112,14 +112,14 @@ RigidProbe::RigidProbe(std::span<const SceneObject> objects, const SceneTouch& t
   }
 }
 
-void RigidProbe::place(std::uint32_t object, const Vec3& device, const Pose& pose) noexcept {
-  std::visit([&](auto& proxy) { proxy.place(to_object(pose, device)); }, proxies_[object]);
+void RigidProbe::move_to(std::uint32_t object, const Vec3& device, const Pose& pose) noexcept {
+  std::visit([&](auto& proxy) { proxy.move_to(to_object(pose, device)); }, proxies_[object]);
 }
 
-void RigidProbe::place_all(const Vec3& device, std::span<const Pose> poses) noexcept {
+void RigidProbe::move_all(const Vec3& device, std::span<const Pose> poses) noexcept {
   device_ = device;
   if (attended_only_) look_around(device, poses);
-  for (const std::uint32_t i : near_) place(i, device, poses[i]);
+  for (const std::uint32_t i : near_) move_to(i, device, poses[i]);
 }
 
 void RigidProbe::attend(std::uint32_t object, const Pose& pose) {
@@ -128,7 +128,7 @@ void RigidProbe::attend(std::uint32_t object, const Pose& pose) {
   seen.attended_at = moves_ + 1;
   if (seen.near) return;
   seen.near = true;
-  place(object, device_, pose);
+  move_to(object, device_, pose);
   near_.insert(std::lower_bound(near_.begin(), near_.end(), object), object);
 }
 
@@ -143,7 +143,7 @@ void RigidProbe::look_around(const Vec3& device, std::span<const Pose> poses) no
     const Vec3 away = poses[i].position - middle;
     const double reach = around + seen.reach;
     const bool is_near = seen.attended_at == moves_ || dot(away, away) <= reach * reach;
-    if (is_near && !seen.near) place(i, device_, poses[i]);
+    if (is_near && !seen.near) move_to(i, device_, poses[i]);
     seen.near = is_near;
     if (is_near) near_.push_back(i);
   }
@@ -164,7 +164,7 @@ void RigidProbe::follow(const Vec3& device, std::span<const Pose> poses) noexcep
   if (touched_) {
     if (move_one(*touched_, device, poses)) return;
     touched_.reset();
-    place_all(device, poses);
+    move_all(device, poses);
   }
   const bool looks =
       norm(device - looked_from_) > 0.5 * kAround || moves_ % kLookAgain == 0;  // some of those near may rest by now
@@ -178,7 +178,7 @@ Touch RigidProbe::move(const Vec3& device, bool button, std::span<const Pose> po
   if (!placed_ || (anchor_ && !button)) {
     anchor_.reset();
     touched_.reset();
-    place_all(device, poses);
+    move_all(device, poses);
     placed_ = true;
   }
   if (!anchor_) follow(device, poses);

@@ -37,7 +37,7 @@ class BoxProxy {
   BoxProxy(const Vec3& half, double friction) noexcept : half_(half), friction_(friction) {}
 
   /// Place the probe without history; inside the box the nearest face holds it.
-  void place(const Vec3& probe) noexcept;
+  void move_to(const Vec3& probe) noexcept;
   /// Move the probe there.
   void move(const Vec3& probe) noexcept;
 
@@ -83,8 +83,8 @@ class RigidProbe {
  private:
   using Proxy = std::variant<BoxProxy, SurfaceProxy>;
 
-  void place(std::uint32_t object, const Vec3& device, const Pose& pose) noexcept;
-  void place_all(const Vec3& device, std::span<const Pose> poses) noexcept;
+  void move_to(std::uint32_t object, const Vec3& device, const Pose& pose) noexcept;
+  void move_all(const Vec3& device, std::span<const Pose> poses) noexcept;
   void look_around(const Vec3& device, std::span<const Pose> poses) noexcept;
   bool move_one(std::size_t object, const Vec3& device, std::span<const Pose> poses) noexcept;
   void follow(const Vec3& device, std::span<const Pose> poses) noexcept;

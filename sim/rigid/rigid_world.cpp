@@ -166,7 +166,7 @@ void RigidWorld::push(std::uint32_t object, const Vec3& force, const Vec3& point
   body.push.torque = body.push.torque + along_free(cross(point - vec(dBodyGetPosition(body.handle)), force), body.spec.dof, 3);
 }
 
-void RigidWorld::place(std::uint32_t object, const Pose& pose) noexcept {
+void RigidWorld::move_to(std::uint32_t object, const Pose& pose) noexcept {
   Body& body = impl_->bodies[object];
   if (!body.handle) return;
   impl_->watch.disturb(body.mover);

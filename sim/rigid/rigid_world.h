@@ -48,7 +48,7 @@ class RigidWorld {
   tl::expected<void, Diagnostic> step();
 
   /// Put an object elsewhere; it keeps its velocities.   time O(1), and that of waking it
-  void place(std::uint32_t object, const Pose& pose) noexcept;
+  void move_to(std::uint32_t object, const Pose& pose) noexcept;
   /// Wake an object for the next step, as a push without force would.
   void wake(std::uint32_t object) noexcept;
   /// Objects whose states the last step may have changed, ascending; before the first step all.

@@ -90,7 +90,7 @@ void stroke_ball(benchmark::State& state, sim::MeshProxyOptions options) {
     const double t = 1e-3 * static_cast<double>(i), radius = 0.1 + 0.006 * std::sin(3 * t), polar = 1.5 + 1.2 * std::sin(0.7 * t);
     return radius * Vec3{std::sin(polar) * std::cos(4 * t), std::sin(polar) * std::sin(4 * t), std::cos(polar)};
   };
-  proxy.place(1.2 * path(0), body.inside, body.mesh.vertices, body.tree);
+  proxy.move_to(1.2 * path(0), body.inside, body.mesh.vertices, body.tree);
   for (auto _ : state) {
     samples.time(state, [&] { touched += proxy.move(path(tick), body.mesh.vertices, body.tree).touched ? 1 : 0; });
     ++tick;
@@ -150,7 +150,7 @@ void intermediate_model_tick(benchmark::State& state) {
   Body body(surface(sim::make_slab(16, 20, 1, 0.01)).mesh);
   const std::vector<Vec3> rest = body.mesh.vertices;
   sim::IntermediateModel model(body.mesh, body.topology, {.rings = 3, .ticks = 16, .proxy = {.friction = 0.3}});
-  model.place({0.08, 0.1, 0.03}, body.mesh.vertices, body.tree);
+  model.move_to({0.08, 0.1, 0.03}, body.mesh.vertices, body.tree);
   Samples samples;
   std::int64_t tick = 0;
   for (auto _ : state) {

@@ -315,9 +315,9 @@ def test_what_a_device_drives_and_deforms():
              for d, e in ((None, None), (box.driven, None), (None, body), (box.driven, body))]
     assert len(set(plain)) == 4 and len(plain[0]) < len(plain[1]) < len(plain[2]) < len(plain[3])
     assert tactus.Scene(plain[3]).to_bytes() == plain[3]
-    for change, said in (({"material": [0, 1]}, "2 numbers of materials for 4"), ({"tets": [[0, 1, 2, 0.5]]}, "tets are whole"),
+    for change, printed in (({"material": [0, 1]}, "2 numbers of materials for 4"), ({"tets": [[0, 1, 2, 0.5]]}, "tets are whole"),
                          ({"fixed": [1.5]}, "fixed are whole"), ({"method": "euler"}, "method 'euler' is none of")):
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(ValueError, match=printed):
             tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=dataclasses.replace(body, **change))])
     explicit = dataclasses.replace(body, method="velocity-verlet", sub_steps=40)
     declared = tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=explicit)]).to_bytes()

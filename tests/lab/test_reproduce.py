@@ -64,9 +64,9 @@ class Arithmetic(unittest.TestCase):
         ticks = {"force_rendered_N": [0, 1, 1, -2, -2], "update": [None, "haptic", None, "visual", "haptic"]}
         self.assertEqual(signals.jumps(ticks), {"updates": 3, "median_jump_N": 1, "largest_jump_N": 3})
 
-    def test_fraction_felt_counts_contact_only(self):
-        self.assertEqual(delay.fraction_felt([0, 1.0, 1.2, 0.5], [0, 1.0, 1.0, 0]), 100 * 2 / 3)
-        self.assertEqual(delay.fraction_felt([0], [0]), 0)
+    def test_fraction_outside_counts_contact_only(self):
+        self.assertEqual(delay.fraction_outside([0, 1.0, 1.2, 0.5], [0, 1.0, 1.0, 0]), 100 * 2 / 3)
+        self.assertEqual(delay.fraction_outside([0], [0]), 0)
 
     def test_after_a_jump(self):
         run = lambda of: {"ticks": [{"force_N": [9.0] * 2800 + of}]}
@@ -87,7 +87,7 @@ class Arithmetic(unittest.TestCase):
         self.assertEqual(rates.order_of(rows((3, 0.1), (3.5, 0.1), (1, 0.1)), names), "does not hold")
 
     def test_violations_are_added_and_worst_kept(self):
-        run = {"packets_per_s": 2.0, "payload_bit_per_s": 8, "bytes_per_update": 4, "visual_violations": 1, "fraction_felt_over_jnd": 0.5,
+        run = {"packets_per_s": 2.0, "payload_bit_per_s": 8, "bytes_per_update": 4, "visual_violations": 1, "fraction_over_jnd": 0.5,
                "fraction_in_contact": 0.5, "haptic_violations": 2, "fraction_shown_over": 0.2, "worst_shown_ratio": 1.5}
         found = rates.summarise(rates.SETTINGS["S4_NI"], [run, run | {"packets_per_s": 4.0, "worst_shown_ratio": 1.2}])
         self.assertEqual((found["packets_per_s"], found["visual_violations"], found["haptic_violations"], found["worst_shown_ratio"]),

@@ -58,13 +58,13 @@ class Formulas(unittest.TestCase):
         self.assertEqual(Formula("a * b.c_1 / a").names, ["a", "b.c_1", "a"])
 
     def test_what_is_no_formula_is_said_with_its_location(self):
-        for text, said in (("", "a number or the name of a column is wanted at character 1"), ("a b", "an operator is wanted at character 3"),
+        for text, printed in (("", "a number or the name of a column is wanted at character 1"), ("a b", "an operator is wanted at character 3"),
                            ("(a", "a ) is wanted at character 3"), ("a + * b", "a number or the name of a column is wanted at character 5"),
                            ("(" * 40 + "a", "an end of the parentheses is wanted at character 33"), ("a ** 2", "a number or the name"),
                            ("__import__('os')", "a number or the name of a column is wanted at character 1")):
             with self.assertRaises(NotAFormula) as caught:
                 Formula(text)
-            self.assertIn(said, str(caught.exception), text)
+            self.assertIn(printed, str(caught.exception), text)
 
     def test_number_of_a_cell(self):
         for cell, number in (("2.5%", 2.5), ("5mm,4deg", 5), ("-1e-3x", -1e-3), (".5", 0.5), ("1e", 1)):
@@ -92,7 +92,7 @@ class Plans(unittest.TestCase):
             self.assertGreater(plans.load(path).count(), 0)
 
     def test_each_mistake_is_found(self):
-        for old, new, said in (
+        for old, new, printed in (
                 ('name = "small"', "", "name: is missing"), ('"small"', '"../x"', "is no name"), ('"small"', "3", "is no text"),
                 ('["one"]', '"one"', "vary.hand: is no array of texts"), ('["one"]', "[]", "vary.hand: is no array of texts"),
                 ('["one"]', "[1]", "holds what is no text"), ("count = 5", "count = 1", "count: is 1"),
@@ -102,9 +102,9 @@ class Plans(unittest.TestCase):
                 ('"{p}"]', '"4%"]', "vary.p: is used nowhere"), ("{hand}", "{hands}", "nothing here has the name {hands}"),
                 ('"{p}"]', '"{p"]', "is not closed"), ("one-{seed}.mcap", "one.mcap", "does not name {seed}"),
                 ("one-{seed}.mcap", "{seed}/x", "is no name of a file"), ("[vary]", "[varied]", "is no key of a plan")):
-            with self.subTest(said), self.assertRaises(Refusal) as caught:
+            with self.subTest(printed), self.assertRaises(Refusal) as caught:
                 loaded(SMALL.replace(old, new))
-            self.assertIn(said, "\n".join(text for text, _ in caught.exception.findings))
+            self.assertIn(printed, "\n".join(text for text, _ in caught.exception.findings))
 
     def test_lines(self):
         with self.assertRaises(Refusal) as caught:

@@ -23,8 +23,8 @@ ROWS = [  # what else is asked for, clients, instructions that one more object m
 
 def instructions(program, folder, objects, clients, more):
     request = {"clients": clients, "objects": objects, "moving": 0, "ticks": TICKS} | more
-    counted, said = callgrind.instructions(folder / "counts", "tactus_scale_tick", program, "scale", json.dumps(request))
-    live = json.loads(said)["live"]
+    counted, printed = callgrind.instructions(folder / "counts", "tactus_scale_tick", program, "scale", json.dumps(request))
+    live = json.loads(printed)["live"]
     if live != clients:
         sys.exit(f"FAILED  {live} of {clients} clients are live")
     return counted / TICKS

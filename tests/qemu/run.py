@@ -92,21 +92,21 @@ def boot(kernel, archive, folder):
 
 
 def captures(console):
-    """Of each: what the device said at its end, what was printed meanwhile, and what the capture said."""
+    """Of each: what the device printed at its end, what was printed meanwhile, and what the capture printed."""
     found = re.findall(r"^BEGIN (\d+) ([^\n]*)\n(.*?)^END$", console, re.S | re.M)
     if len(found) != 2:
         sys.exit(f"run.py: the machine did not come to its end:\n{console[-3000:]}")
-    for status, _, said in found:
-        assert status == "1" and "R-DEV-4" in said, said  # the device is gone
-    return [(json.loads(device), said) for _, device, said in found]
+    for status, _, printed in found:
+        assert status == "1" and "R-DEV-4" in printed, printed  # the device is gone
+    return [(json.loads(device), printed) for _, device, printed in found]
 
 
 def rows_of(tactus, trace):
     return list(csv.DictReader(io.StringIO(run(tactus, "export", "csv", trace, text=True))))
 
 
-def check_controller(console, device, said, rows):
-    clock, said = said.split("\n", 1)
+def check_controller(console, device, printed, rows):
+    clock, printed = printed.split("\n", 1)
     assert "2033" in clock, clock
     assert "hid:0" in console and "Six axes, serial U1" in console, console
     raw = [round(float(row["/users/hand/device_x"]) / STEP_M) + REACH for row in rows]
@@ -119,12 +119,12 @@ def check_controller(console, device, said, rows):
           f"trace: {len(rows)} ticks, {missed} missed; late p50 {late[len(late) // 2] / 1e3:.0f} us, p99 {late[len(late) * 99 // 100] / 1e3:.0f} us,"
           f" max {late[-1] / 1e3:.0f} us\n"
           f"motion: {seen} of {device['reports']} reports followed, in order, largest step {max(steps)}\n"
-          f"at the end: {json.loads(said)['error']['text']}")
+          f"at the end: {json.loads(printed)['error']['text']}")
     assert seen == device["reports"], "the trace does not follow the motion to its end"
     assert max(steps) < 100, "a stretch of motion is missing"
 
 
-def check_glove(console, device, said, rows):
+def check_glove(console, device, printed, rows):
     assert "hid:/dev/hidraw0" in console and "Glove, serial U1, recorded report by report" in console, console
     reports = [bytes.fromhex(word) for row in rows for word in row["/users/hand/device_reports"].split()]
     expected = [n.to_bytes(4, "little") + bytes([n % 251]) * 60 for n in range(device["reports"])]
@@ -141,8 +141,8 @@ def main():
     build_root(root, [tactus, device], version)
     pack(root, folder / "initramfs.cpio")
     console, traces = boot(kernel, folder / "initramfs.cpio", folder)
-    for check, (device, said), trace in zip((check_controller, check_glove), captures(console), traces):
-        check(console, device, said, rows_of(tactus, trace))
+    for check, (device, printed), trace in zip((check_controller, check_glove), captures(console), traces):
+        check(console, device, printed, rows_of(tactus, trace))
 
 
 if __name__ == "__main__":

@@ -108,8 +108,8 @@ class Slurm:
         while time.monotonic() < end:
             died = [p.args[0] for p in self.running if p.poll() is not None]
             if died:
-                said = (self.at / f"{died[0]}.out").read_text(errors="replace").strip().splitlines()
-                raise CannotStart(f"{died[0]} ended: {said[-1] if said else 'without a word'}")
+                printed = (self.at / f"{died[0]}.out").read_text(errors="replace").strip().splitlines()
+                raise CannotStart(f"{died[0]} ended: {printed[-1] if printed else 'without a word'}")
             try:
                 if self.run("sinfo", "--noheader", "--format=%T", timeout=5).stdout.strip() == "idle":
                     return

@@ -39,7 +39,7 @@ SECONDS = 240  # for one block
 class Block(typing.NamedTuple):
     line: int
     mark: str  # what stands above it
-    said: str
+    printed: str
     kind: str
     text: str
 
@@ -101,7 +101,7 @@ def print_of(words, **how):
 def do(block):
     """Run a block.   out  what it prints, and what is wrong"""
     if block.mark == "file":
-        pathlib.Path(block.said).write_text(block.text, encoding="utf8")
+        pathlib.Path(block.printed).write_text(block.text, encoding="utf8")
         return "", ""
     if block.mark == "example":
         return do_example(block)
@@ -123,9 +123,9 @@ def do_js(block):
 
 
 def do_example(block):
-    source = ROOT / "examples" / block.said
+    source = ROOT / "examples" / block.printed
     if not source.is_file() or not is_part_of(block.text, source.read_text(encoding="utf8")):
-        return "", f"these are not lines of examples/{block.said}"
+        return "", f"these are not lines of examples/{block.printed}"
     return lambda: print_of([str(build() / "examples" / ("example_" + source.stem))]), ""
 
 
@@ -149,7 +149,7 @@ def run(page):
             os.symlink(ROOT / name, name)
     for block in blocks(page):
         where = f"{page.name}:{block.line}"
-        if block.mark == "not run" or block.mark == "needs" and not is_there(block.said):
+        if block.mark == "not run" or block.mark == "needs" and not is_there(block.printed):
             printed = None
         elif block.kind == "text":
             if callable(printed):  # an example: some want arguments, and are run by tests of their own
@@ -170,7 +170,7 @@ def run(page):
 
 
 def findings(page, name):
-    """What can be said without running."""
+    """What can be printed without running."""
     before = None
     for block in blocks(page):
         where = f"{name}:{block.line}"
@@ -182,7 +182,7 @@ def findings(page, name):
         elif block.mark != "not run" and not (
                 block.kind in SHELL | {"python", "js"} or block.mark == "example" or block.mark == "file" and block.kind in FILES):
             yield f"{where}: nobody runs a block `{block.kind}`; say why: <!-- not run: REASON -->"
-        if block.mark == "not run" and len(block.said) < 8:
+        if block.mark == "not run" and len(block.printed) < 8:
             yield f"{where}: not run without a reason"
         if block.kind != "text":
             before = None if block.mark == "not run" else block
@@ -269,7 +269,7 @@ def main(args):
         for page in pages():
             for block in blocks(page):
                 if block.mark in ("not run", "needs"):
-                    print(f"{page.relative_to(ROOT)}:{block.line}: {block.mark}: {block.said}")
+                    print(f"{page.relative_to(ROOT)}:{block.line}: {block.mark}: {block.printed}")
         return 0
     if args[:1] == ["run"] and len(args) > 1:
         wrong = []

@@ -91,7 +91,7 @@ class Program:
             if len(found) >= count:
                 return found[count - 1]
             time.sleep(0.02)
-        raise AssertionError(f"nothing of the kind was said: {self.lines}")
+        raise AssertionError(f"nothing of the kind was printed: {self.lines}")
 
     def signal(self, number):
         os.kill(self.process.pid, number)
@@ -104,8 +104,8 @@ class Program:
 
 def event(kind):
     def of(line):
-        said = json.loads(line) if line.startswith("{") else {}
-        return said if said.get("event") == kind else None
+        printed = json.loads(line) if line.startswith("{") else {}
+        return printed if printed.get("event") == kind else None
     return of
 
 

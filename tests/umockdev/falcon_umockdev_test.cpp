@@ -149,7 +149,7 @@ class FalconUmockdev : public testing::Testbed {
     if (head.type == USBDEVFS_URB_TYPE_CONTROL) head.actual_length = control(buffer);
     else if (head.endpoint == 0x02) head.actual_length = heard(buffer);
     else if (falcon_.answer.empty() && Clock::now() - urb.begin < std::chrono::milliseconds(1)) return false;
-    else head.actual_length = said(buffer);
+    else head.actual_length = answered(buffer);
     return true;
   }
   /// Eight bytes of request, then its data.
@@ -168,7 +168,7 @@ class FalconUmockdev : public testing::Testbed {
     falcon_.hear(bytes);
     return static_cast<int>(bytes.size());
   }
-  int said(std::span<std::uint8_t> buffer) {
+  int answered(std::span<std::uint8_t> buffer) {
     const std::size_t size = std::min(falcon_.answer.size(), buffer.size() - 2);
     buffer[0] = 1, buffer[1] = 0x60;
     std::copy_n(falcon_.answer.begin(), size, buffer.begin() + 2);

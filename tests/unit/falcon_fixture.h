@@ -74,16 +74,16 @@ struct FakeFalcon {
     if (!is_deaf) answer.insert(answer.end(), bytes.begin(), bytes.end());
   }
   void hear(std::span<const std::uint8_t> bytes) {
-    const std::vector<std::uint8_t> said(bytes.begin(), bytes.end());
-    if (baud == 2 && said.size() == 16) {
-      std::copy(said.begin(), said.end(), frames.emplace_back().begin());
+    const std::vector<std::uint8_t> answered(bytes.begin(), bytes.end());
+    if (baud == 2 && answered.size() == 16) {
+      std::copy(answered.begin(), answered.end(), frames.emplace_back().begin());
       if (runs) say(frame_of(reply));
-    } else if (baud == 0x4138 && said == std::vector<std::uint8_t>{0x0a, 0x43, 0x0d}) {
+    } else if (baud == 0x4138 && answered == std::vector<std::uint8_t>{0x0a, 0x43, 0x0d}) {
       say({0x0a, 0x44, 0x2c, 0x0d});
     } else if (baud == 0x15) {
-      if (said.size() > 1) firmware.insert(firmware.end(), said.begin(), said.end());
+      if (answered.size() > 1) firmware.insert(firmware.end(), answered.begin(), answered.end());
       runs = takes_firmware;
-      say(said);
+      say(answered);
     }
   }
 };

@@ -27,12 +27,12 @@ struct Scene {
     body.tree.refit(body.mesh.vertices);
   }
   void update() { model.update(body.mesh.vertices, body.tree); }
-  void place(const Vec3& probe) { model.place(probe, body.mesh.vertices, body.tree); }
+  void move_to(const Vec3& probe) { model.move_to(probe, body.mesh.vertices, body.tree); }
 };
 
 TEST(IntermediateModel, IsTheMeshAroundTheTouchedTriangle) {
   Scene scene;
-  scene.place({0.011, 0.012, 0.01});
+  scene.move_to({0.011, 0.012, 0.01});
   const ProxyTouch touch = scene.model.move({0.011, 0.012, -0.001});
   ASSERT_TRUE(touch.touched);
   scene.update();
@@ -47,7 +47,7 @@ TEST(IntermediateModel, IsTheMeshAroundTheTouchedTriangle) {
 
 TEST(IntermediateModel, VerticesGoStraightToTheNewShapeInOnePeriod) {
   Scene scene;
-  scene.place({0.001, 0.002, 0.02});
+  scene.move_to({0.001, 0.002, 0.02});
   const std::vector<Vec3> old = scene.body.mesh.vertices;
   scene.deform(0.5);
   scene.update();
@@ -68,9 +68,9 @@ TEST(IntermediateModel, OnAMeshAtRestItIsTheMesh) {
   Scene scene;
   scene.deform(0.3);
   const Vec3 start{0.01, 0.003, 0.02};
-  scene.place(start);
+  scene.move_to(start);
   MeshProxy whole({.friction = 0.3}, 0.075);
-  whole.place(start, scene.body.inside, scene.body.mesh.vertices, scene.body.tree);
+  whole.move_to(start, scene.body.inside, scene.body.mesh.vertices, scene.body.tree);
   Random random(4);
   Vec3 probe{0.01, 0.003, 0.002};
   int touching = 0;
@@ -93,7 +93,7 @@ TEST(IntermediateModel, OnAMeshAtRestItIsTheMesh) {
 
 TEST(IntermediateModel, NewCutOutsDoNotJump) {
   Scene scene;
-  scene.place({0, 0, 0.02});
+  scene.move_to({0, 0, 0.02});
   const auto path = [](double t) { return Vec3{0.03 * std::sin(2 * t), 0.02 * std::sin(3 * t), -0.008}; };
   Vec3 last;
   int touching = 0;
@@ -120,7 +120,7 @@ TEST(IntermediateModel, NewCutOutsDoNotJump) {
 
 TEST(IntermediateModel, WaitsAtTheBorderForTheNextCutOut) {
   Scene scene;
-  scene.place({-0.05, 0.001, 0.01});
+  scene.move_to({-0.05, 0.001, 0.01});
   scene.model.move({-0.05, 0.001, -0.002});
   scene.update();
   ProxyTouch touch;
@@ -140,7 +140,7 @@ TEST(IntermediateModel, WaitsAtTheBorderForTheNextCutOut) {
 TEST(IntermediateModel, ProbeThatCameInBesideTheCutOutIsPutOnTheSurface) {
   const Body body(testing::ball(0.1, 5));
   IntermediateModel model(body.mesh, body.topology, {.rings = 2, .ticks = 16, .proxy = {}});
-  model.place({0, 0, 0.12}, body.mesh.vertices, body.tree);
+  model.move_to({0, 0, 0.12}, body.mesh.vertices, body.tree);
   ProxyTouch touch;
   for (int i = 0; i <= 15; ++i) touch = model.move({0.004 * i, 0, 0.12 - 0.002 * i});  // over the border and then in
   for (int i = 0; i <= 10; ++i) touch = model.move({0.06, 0, 0.09 - 0.002 * i});
@@ -153,7 +153,7 @@ TEST(IntermediateModel, ProbeThatCameInBesideTheCutOutIsPutOnTheSurface) {
 
 TEST(IntermediateModel, AllocatesNothing) {
   Scene scene;
-  scene.place({0, 0, 0.02});
+  scene.move_to({0, 0, 0.02});
   double sum = 0;
   const std::uint64_t before = testing::allocated_bytes();
   for (int tick = 0; tick < 2000; ++tick) {

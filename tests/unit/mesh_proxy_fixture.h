@@ -16,7 +16,7 @@ struct Hand {
   double skin;
 
   Hand(const Body& b, const sim::MeshProxyOptions& options) : body(b), proxy(options, b.extent()), skin(proxy.skin()) {}
-  sim::ProxyTouch place(const Vec3& probe) { return proxy.place(probe, body.inside, body.mesh.vertices, body.tree); }
+  sim::ProxyTouch move_to(const Vec3& probe) { return proxy.move_to(probe, body.inside, body.mesh.vertices, body.tree); }
   sim::ProxyTouch move(const Vec3& probe) { return proxy.move(probe, body.mesh.vertices, body.tree); }
   sim::ProxyTouch move_along(const Vec3& from, const Vec3& to, int ticks) {
     sim::ProxyTouch out;

@@ -35,7 +35,7 @@ TEST(MeshProxyMoving, NoSurfacePassesOverHoweverFast) {
         Body body(plate);
         Hand hand(body, {.friction = 0.3});
         const Vec3 rest{3.1 * thickness, 2.9 * thickness, 2 * thickness + 1e-3 * speed * (3 + phase / 50.0)};
-        hand.place(rest);
+        hand.move_to(rest);
         for (int tick = 0; tick < 8; ++tick) {
           std::vector<Vec3> vertices = body.mesh.vertices;
           for (Vec3& v : vertices) v.z += 1e-3 * speed;

@@ -26,13 +26,13 @@ TEST(MeshProxy, FollowsTheProbeInFreeSpace) {
     Vec3 probe = testing::random_point(random, 1);
     if (norm(probe) < 0.12) continue;
     probe = (0.2 / norm(probe)) * probe;  // neighbours may lie on opposite sides of the ball, ...
-    hand.place(probe);                    // ... so each is a start
+    hand.move_to(probe);                    // ... so each is a start
     const ProxyTouch touch = hand.move(probe + testing::random_point(random, 0.05));
     ASSERT_FALSE(touch.touched);
     ASSERT_EQ(touch.proxy, hand.proxy.position());
   }
   const Vec3 probe{0.3, 0.2, 0.1};
-  hand.place({0.3, 0.3, 0.3});
+  hand.move_to({0.3, 0.3, 0.3});
   EXPECT_EQ(hand.move(probe).proxy, probe) << "bit for bit";
 }
 
@@ -135,7 +135,7 @@ TEST(MeshProxy, RidgeTurnsTheForceOnlyWhenTheOtherSideIsNearer) {
 TEST(MeshProxy, SharpEdgeDoesNotTurnTheForce) {  // thesis figure 2.6 b, c
   const Body body(testing::box({0.02, 0.02, 0.02}));
   Hand hand(body, {});
-  hand.place({0.01, 0.001, 0.03});
+  hand.move_to({0.01, 0.001, 0.03});
   for (int i = 0; i < 100; ++i) {
     const Vec3 probe{0.01 + 0.0001 * i, 0.001, 0.01};  // 10 mm deep: soon far nearer to the side than to the top
     const ProxyTouch touch = hand.move(probe);
@@ -151,7 +151,7 @@ TEST(MeshProxy, CornerHoldsWithThreePlanes) {
   const Body body(testing::inside_out(testing::box({0.1, 0.1, 0.1})));  // a room
   for (const double friction : {0.0, 0.3}) {
     Hand hand(body, {.friction = friction});
-    EXPECT_FALSE(hand.place({0, 0.01, 0.02}).touched);
+    EXPECT_FALSE(hand.move_to({0, 0.01, 0.02}).touched);
     const ProxyTouch touch = hand.move_along({0, 0.01, 0.02}, {0.11, 0.12, 0.13}, 300);
     ASSERT_TRUE(touch.touched);
     if (friction == 0) {
@@ -168,7 +168,7 @@ TEST(MeshProxy, FineBallIsASphere) {
   constexpr double kRadius = 0.1;
   const Body body(testing::ball(kRadius, 6));  // 32 768 triangles; edges of 2.5 mm lie up to 8 um below the sphere
   Hand hand(body, {});
-  hand.place({0, 0, 0.11});
+  hand.move_to({0, 0, 0.11});
   Random random(3);
   double previous_depth = 0;
   Vec3 direction{0, 0, 1}, probe{0, 0, 0.11}, previous_proxy = probe;
@@ -199,7 +199,7 @@ TEST(MeshProxy, ThinPlatesAtOneMetrePerSecond) {  // thesis figure 2.6 a
       for (const Vec3 inward : {Vec3{0, 0, -1}, Vec3{0.6, 0, -0.8}, Vec3{0.5, 0.5, -std::sqrt(0.5)}}) {
         Hand hand(body, {.friction = friction});
         const Vec3 start = Vec3{0.0013, 0.0017, 0.0013} - 0.005 * inward;
-        hand.place(start);
+        hand.move_to(start);
         for (int tick = 1; tick <= 30; ++tick) {
           const Vec3 probe = start + (1e-3 * tick) * inward;
           const ProxyTouch touch = hand.move(probe);
@@ -225,7 +225,7 @@ TEST(MeshProxy, OpenSheetHoldsFromBothSides) {
 TEST(MeshProxy, SphereKeepsItsRadius) {
   const Body body(testing::ball(0.05, 5));
   Hand hand(body, {.radius = 0.01});
-  hand.place({0, 0, 0.1});
+  hand.move_to({0, 0, 0.1});
   ProxyTouch touch = hand.move({0, 0, 0.055});
   EXPECT_NEAR(touch.proxy.z, 0.06, 2 * hand.skin) << "over the topmost vertex";
   Random random(4);
@@ -262,14 +262,14 @@ TEST(MeshProxy, SphereDoesNotFallIntoAGapThatIsTooNarrow) {
 TEST(MeshProxy, PlacedInsideTheNearestPointHoldsIt) {
   const Body body(testing::box({0.02, 0.02, 0.02}));
   Hand hand(body, {.friction = 0.5});
-  const ProxyTouch touch = hand.place({0.001, -0.015, 0.01});
+  const ProxyTouch touch = hand.move_to({0.001, -0.015, 0.01});
   ASSERT_TRUE(touch.touched);
   expect_near(touch.proxy, {0.001, -0.02, 0.01}, 2 * hand.skin);
   expect_near(touch.normal, {0, -1, 0}, 1e-12);
-  EXPECT_FALSE(hand.place({0.001, -0.021, 0.01}).touched);
+  EXPECT_FALSE(hand.move_to({0.001, -0.021, 0.01}).touched);
   const Body sheet(flat());
   Hand open(sheet, {});
-  EXPECT_FALSE(open.place({0, 0, -0.01}).touched) << "an open sheet has no inside";
+  EXPECT_FALSE(open.move_to({0, 0, -0.01}).touched) << "an open sheet has no inside";
 }
 
 TEST(MeshProxy, NotANumberIsIgnored) {
@@ -287,8 +287,8 @@ TEST(MeshProxy, NumberingDoesNotMatter) {
   Hand a(body, {.friction = 0.3}), b(other, {.friction = 0.3});
   Random random(8);
   Vec3 probe{0, 0, 0.12};
-  a.place(probe);
-  b.place(probe);
+  a.move_to(probe);
+  b.move_to(probe);
   for (int i = 0; i < 3000; ++i) {
     probe = (0.095 / norm(probe)) * probe + testing::random_point(random, 0.002);
     expect_near(a.move(probe).proxy, b.move(probe).proxy, 1e-6);
@@ -353,7 +353,7 @@ TEST(MeshProxy, RandomWalksNeverCrossAClosedMesh) {
     Hand hand(body, {.friction = 0.3, .radius = radius});
     Random random(13);
     Vec3 probe{0.09, 0, 0};
-    hand.place(probe);
+    hand.move_to(probe);
     int touching = 0;
     for (int i = 0; i < 20'000; ++i) {
       probe = probe + testing::random_point(random, 0.0015);
@@ -376,7 +376,7 @@ TEST(MeshProxy, DisplacementsThatAreCutShortStayOutside) {
     for (int run = 0; run < 300; ++run) {
       Hand hand(body, {.friction = 0.2, .radius = radius});
       const Vec3 towards = testing::random_point(random, 1), start = (0.1 / norm(towards)) * towards;
-      hand.place(start);
+      hand.move_to(start);
       const Vec3 goal = testing::random_point(random, 0.02);  // deep inside
       for (int i = 0; i < 20; ++i) {
         const ProxyTouch touch = hand.move(goal);
@@ -405,7 +405,7 @@ TEST(MeshProxy, FrictionCarriesTheProxyWithTheSurface) {
 TEST(MeshProxy, AllocatesNothing) {
   const Body body(testing::bumpy_ball(0.1, 4, 0.1, 6));
   Hand hand(body, {.friction = 0.3});
-  hand.place({0, 0, 0.12});
+  hand.move_to({0, 0, 0.12});
   Random random(8);
   double sum = 0;
   const std::uint64_t before = testing::allocated_bytes();

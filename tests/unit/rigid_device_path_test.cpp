@@ -52,7 +52,7 @@ TEST(DevicePath, PacketsActFromTheirTickOn) {
   EXPECT_EQ(path.x(18), 50);
 }
 
-TEST(DevicePath, OvertakenPacketsTakeTheirSlot) {
+TEST(DevicePath, ReorderedPacketsTakeTheirSlot) {
   Path path;
   path.shift(0, 0);
   path.put(1, 1, 0.001);
@@ -103,7 +103,7 @@ TEST(DevicePath, OlderTickMappingsAndPacketsAreForgotten) {
   EXPECT_EQ(path.state_at(1500)->tick, 1500) << "a tick mapping of the past is not taken";
 }
 
-/// Overtaken by all that is kept: there is no slot for it.
+/// Reordered by all that is kept: there is no slot for it.
 TEST(DevicePath, TheOldestOfAFullPathIsNotTaken) {
   Path path;
   path.shift(0, 0);

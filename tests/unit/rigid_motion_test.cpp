@@ -121,15 +121,15 @@ INSTANTIATE_TEST_SUITE_P(Speeds, FreeBox, ::testing::Values(2.0, 10.0, 50.0, 200
 TEST(RigidMotion, ASymmetricTopPrecessesAtItsRate) {
   Scene scene = cube_scene(Dof::rx | Dof::ry | Dof::rz);
   scene.floor.reset();
-  const double lean = 0.3, lever = 0.05, weight = 2;  // [rad], [m], [N]
+  const double tilt = 0.3, lever = 0.05, weight = 2;  // [rad], [m], [N]
   scene.objects[0].size = {0.06, 0.06, 0.02};
-  scene.objects[0].pose.rotation = {std::cos(lean / 2), std::sin(lean / 2), 0, 0};
+  scene.objects[0].pose.rotation = {std::cos(tilt / 2), std::sin(tilt / 2), 0, 0};
   const double across = kMass * (0.06 * 0.06 + 0.02 * 0.02) / 12, along = kMass * 2 * 0.06 * 0.06 / 12, spin = 150;
-  // The slow root of I1 cos(lean) p^2 - L3 p + weight lever = 0
-  const double l3 = along * spin, c = across * std::cos(lean);
+  // The slow root of I1 cos(tilt) p^2 - L3 p + weight lever = 0
+  const double l3 = along * spin, c = across * std::cos(tilt);
   const double rate = (l3 - std::sqrt(l3 * l3 - 4 * c * weight * lever)) / (2 * c);
-  const Vec3 axis{0, -std::sin(lean), std::cos(lean)};
-  scene.objects[0].angular_velocity = rate * Vec3{0, 0, 1} + (spin - rate * std::cos(lean)) * axis;
+  const Vec3 axis{0, -std::sin(tilt), std::cos(tilt)};
+  scene.objects[0].angular_velocity = rate * Vec3{0, 0, 1} + (spin - rate * std::cos(tilt)) * axis;
   RigidWorld world(scene);
   double turned = 0;
   Vec3 last = axis;
@@ -140,7 +140,7 @@ TEST(RigidMotion, ASymmetricTopPrecessesAtItsRate) {
     const Vec3 now = rotate(world.sample(0).pose.rotation, {0, 0, 1});
     turned += std::atan2(last.x * now.y - last.y * now.x, last.x * now.x + last.y * now.y);
     last = now;
-    ASSERT_NEAR(now.z, std::cos(lean), 1e-3) << "it does not nod";
+    ASSERT_NEAR(now.z, std::cos(tilt), 1e-3) << "it does not nod";
   }
   EXPECT_NEAR(turned / 3, rate, 1e-3 * rate);
 }

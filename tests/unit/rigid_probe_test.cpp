@@ -27,7 +27,7 @@ bool inside(const Vec3& p, const Vec3& half) {
 
 TEST(BoxProxy, FollowsTheProbeInFreeSpace) {
   BoxProxy proxy(kHalf, 0.5);
-  proxy.place({0.1, 0, 0});
+  proxy.move_to({0.1, 0, 0});
   for (const Vec3 probe : {Vec3{0.05, 0.03, 0}, Vec3{0.021, 0.021, 0.021}, Vec3{-0.03, 0.021, 0}, Vec3{0, 0, -1}}) {
     proxy.move(probe);
     EXPECT_FALSE(proxy.face());
@@ -37,7 +37,7 @@ TEST(BoxProxy, FollowsTheProbeInFreeSpace) {
 
 TEST(BoxProxy, WithoutFrictionItIsTheFootOfTheProbe) {
   BoxProxy proxy(kHalf, 0);
-  proxy.place({0.003, 0.004, 0.05});
+  proxy.move_to({0.003, 0.004, 0.05});
   for (const Vec3 probe : {Vec3{0.003, 0.004, 0.018}, Vec3{-0.01, 0.015, 0.001}, Vec3{0.0199, 0.0199, -0.015}}) {
     proxy.move(probe);
     ASSERT_TRUE(proxy.face());
@@ -48,7 +48,7 @@ TEST(BoxProxy, WithoutFrictionItIsTheFootOfTheProbe) {
 
 TEST(BoxProxy, SticksInsideTheFrictionCone) {
   BoxProxy proxy(kHalf, 0.5);
-  proxy.place({0, 0, 0.03});
+  proxy.move_to({0, 0, 0.03});
   proxy.move({0, 0, 0.018});
   const Vec3 held = proxy.position();
   for (int i = 0; i < 63; ++i) {
@@ -60,7 +60,7 @@ TEST(BoxProxy, SticksInsideTheFrictionCone) {
 
 TEST(BoxProxy, TrailsByMuDepthOutsideTheCone) {
   BoxProxy proxy(kHalf, 0.5);
-  proxy.place({-0.01, 0, 0.03});
+  proxy.move_to({-0.01, 0, 0.03});
   for (int i = -20; i < 25; ++i) proxy.move({0.0005 * i, 0.00025 * i, 0.017});
   const Vec3 probe{0.0125, 0.00625, 0.017};
   proxy.move(probe);
@@ -72,7 +72,7 @@ TEST(BoxProxy, TrailsByMuDepthOutsideTheCone) {
 
 TEST(BoxProxy, EdgeDoesNotTurnTheForceWhileTheProbeIsInside) {
   BoxProxy proxy(kHalf, 0);
-  proxy.place({0.01, 0, 0.03});
+  proxy.move_to({0.01, 0, 0.03});
   for (int i = 0; i < 100; ++i) {
     proxy.move({0.01 + 0.0001 * i, 0, 0.01});  // 10 mm deep: soon far nearer to the side than to the top
     ASSERT_TRUE(proxy.face());
@@ -89,7 +89,7 @@ TEST(BoxProxy, EdgeDoesNotTurnTheForceWhileTheProbeIsInside) {
 TEST(BoxProxy, CornerHoldsWithTheFaceThatWasEntered) {
   for (const Vec3 from : {Vec3{0.019, 0.019, 0.03}, Vec3{0.019, 0.03, 0.019}, Vec3{0.03, 0.019, 0.019}}) {
     BoxProxy proxy(kHalf, 0);
-    proxy.place(from);
+    proxy.move_to(from);
     proxy.move({0.018, 0.018, 0.018});
     ASSERT_TRUE(proxy.face());
     Vec3 expected{0.018, 0.018, 0.018};
@@ -102,7 +102,7 @@ TEST(BoxProxy, CornerHoldsWithTheFaceThatWasEntered) {
 
 TEST(BoxProxy, ThinBoxAtOneMetrePerSecond) {
   BoxProxy proxy({0.05, 0.05, 0.0005}, 0.5);  // 1 mm thick
-  proxy.place({0, 0, 0.0103});
+  proxy.move_to({0, 0, 0.0103});
   for (int tick = 1; tick <= 30; ++tick) {
     const double z = 0.0103 - 1e-3 * tick;
     proxy.move({0, 0, z});
@@ -116,7 +116,7 @@ TEST(BoxProxy, NeverPenetratesAndNeverHoldsOutside) {
   Random random(7);
   BoxProxy proxy(kHalf, 0.5);
   Vec3 probe{0.05, 0, 0};
-  proxy.place(probe);
+  proxy.move_to(probe);
   int touching = 0;
   for (int i = 0; i < 200'000; ++i) {
     const auto step = [&](double v) { return std::clamp(v + random.uniform(-0.003, 0.003), -0.03, 0.03); };
@@ -136,7 +136,7 @@ TEST(BoxProxy, NeverPenetratesAndNeverHoldsOutside) {
 
 TEST(BoxProxy, PlacedInsideTheNearestFaceHoldsIt) {
   BoxProxy proxy(kHalf, 0.5);
-  proxy.place({0, -0.015, 0.01});
+  proxy.move_to({0, -0.015, 0.01});
   ASSERT_TRUE(proxy.face());
   expect_near(proxy.normal(), {0, -1, 0});
   expect_near(proxy.position(), {0, -0.02, 0.01});

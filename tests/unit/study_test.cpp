@@ -68,7 +68,7 @@ TEST(SampledMass, IsTheClosedForm) {
   // Underdamped: x = X e^(-a t) (cos w t + a/w sin w t).
   const Impedance hand{.mass = 0.1, .damping = 0.8, .stiffness = 60};
   SampledMass mass(hand, 1e-3);
-  mass.place(0.01, 0);
+  mass.move_to(0.01, 0);
   const double a = hand.damping / (2 * hand.mass), w = std::sqrt(hand.stiffness / hand.mass - a * a);
   for (int n = 1; n <= 1000; ++n) {
     mass.step(0);

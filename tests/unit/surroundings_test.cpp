@@ -26,9 +26,9 @@ void expect_same(const std::optional<SurfaceHit>& a, const std::optional<Surface
 /// A sphere that drifts over the mesh as a proxy does: short displacements along it, now and then a long one into it, stopped where it touches.
 class Walk {
  public:
-  Walk(const Body& body, double radius, std::uint64_t seed) : body_(body), radius_(radius), random_(seed) { place(); }
+  Walk(const Body& body, double radius, std::uint64_t seed) : body_(body), radius_(radius), random_(seed) { move_to(); }
 
-  void place() {
+  void move_to() {
     const Vec3& vertex = body_.mesh.vertices[random_.next() % body_.mesh.vertices.size()];
     at_ = (1 + 1.5 * radius_ / norm(vertex)) * vertex;
   }

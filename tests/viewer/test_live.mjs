@@ -12,7 +12,7 @@ import {near, runTests} from "./runner.mjs";
 const [tactus, program, work] = process.argv.slice(2);
 mkdirSync(work, {recursive: true});
 
-// A program of ours; `said(pattern)` waits for a line on its standard error, `ended` for its end.
+// A program of ours; `printed(pattern)` waits for a line on its standard error, `ended` for its end.
 function start(...words) {
   const child = spawn(tactus, words, {stdio: ["ignore", "pipe", "pipe"]});
   let out = "";
@@ -22,7 +22,7 @@ function start(...words) {
   child.stderr.setEncoding("utf8").on("data", (text) => ((errors += text), look()));
   child.on("error", (error) => (errors += error.message));
   const ended = new Promise((done) => child.on("close", (code) => (look(), done({code, out, errors}))));
-  const said = (pattern) => new Promise((done, fail) => {
+  const printed = (pattern) => new Promise((done, fail) => {
     look = () => {
       const match = pattern.exec(errors);
       if (match) done(match[1]);
@@ -30,14 +30,14 @@ function start(...words) {
     };
     look();
   });
-  return {child, said, ended};
+  return {child, printed, ended};
 }
 
 // A server with a hand that plays in it, until they are stopped.
 async function serve(scene, observe = "0") {
   const server = start("serve", scene, "-p", "4%", "--listen", "0", "--observe", observe, "--duration", "60min", "--json");
-  const address = await server.said(/observe it at (\S+)/);
-  const port = await server.said(/serving .*:(\d+)/);
+  const address = await server.printed(/observe it at (\S+)/);
+  const port = await server.printed(/serving .*:(\d+)/);
   const hand = start("join", port, "--scene", scene, "--duration", "60min", "-q");
   return {...server, address, hand};
 }

@@ -92,14 +92,14 @@ class Site:
         self.root, self.out, self.todo, self.placed = root, out, [], {}
         self.stems = {c.name: c.stem for c in Book().chapters}
 
-    def place(self, path):
+    def output_of(self, path):
         """Where a file or folder of the tree stands in the site; None: it is not there, and the link checker will say so."""
         if path in self.placed:
             return self.placed[path]
         source = self.root / path
         if source.is_dir():
             readme = path / "README.md"
-            output = self.place(readme) if (self.root / readme).is_file() else path / "index.html"
+            output = self.output_of(readme) if (self.root / readme).is_file() else path / "index.html"
         elif not source.is_file():
             return None
         elif path.name == "README.md":
@@ -122,7 +122,7 @@ class Site:
             stem = self.stems[sought.name]
             output, anchor = SPECIFICATION, f"{stem}-{anchor}" if anchor else stem
         else:
-            output = SPECIFICATION if sought == SPECIFICATION.parent else self.place(sought)
+            output = SPECIFICATION if sought == SPECIFICATION.parent else self.output_of(sought)
         if output is None:
             return url
         relative = os.path.relpath(output, self.placed[path].parent)
@@ -182,7 +182,7 @@ def write(root, out):
     site = Site(root, out)
     site.specification()
     for name in START:
-        site.place(pathlib.PurePosixPath(name))
+        site.output_of(pathlib.PurePosixPath(name))
     while site.todo:
         site.write(site.todo.pop())
 
