@@ -247,7 +247,7 @@ std::optional<std::uint32_t> playout_of(const std::string& value) {
 
 Option* add_told(Command& app, double& value) {
   return app
-      .add_option("--told", value,
+      .add_option(key("client_model_scale"), value,
                   "Mass and stiffness that clients are told of what their devices move, times the true ones, to see what a wrong "
                   "model costs; 0: they are told none [1]")
       ->check(number(0, 1e3))

@@ -40,7 +40,7 @@ Option* add_playout(Command& app, std::string& value);
 /// [us]; nothing: adaptive.   pre  checked by add_playout()
 std::optional<std::uint32_t> playout_of(const std::string& value);
 
-/// `--told FACTOR`.
+/// `--tune client_model_scale=FACTOR`.
 Option* add_told(Command& app, double& value);
 
 /// `--key FILE`.
@@ -62,18 +62,18 @@ inline Option* add_grip(Command& command, std::string& grip, const std::string& 
 }
 
 // ==== hand option ====
-// The options --grip, --pace and --tremor of commands that simulate.
+// The option --grip and the keys pace and tremor of commands that simulate.
 
 /// in  otherwise  what holds without it, for the help
 inline Option* add_pace(Command& command, double& pace, const std::string& otherwise) {
   return command
-      .add_option("--pace", pace,
+      .add_option(key("pace"), pace,
                   "Time that hands take for each movement, times the scene's: 0.5 is twice as fast [" + otherwise + "]")
       ->check(number(0.1, 10))
       ->type_name("FACTOR");
 }
 inline Option* add_tremor(Command& command, double& rms, const std::string& otherwise) {
-  return add_quantity(command, "--tremor", rms, Dimension::length,
+  return add_quantity(command, key("tremor"), rms, Dimension::length,
                       "Tremor of free hands at 8 to 12 Hz, RMS per axis [" + otherwise + "]")
       ->check(within(Dimension::length, "0m", "10mm"));
 }
