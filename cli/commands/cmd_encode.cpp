@@ -75,7 +75,8 @@ tl::unexpected<Failure> refuse_scene(const SceneFinding& finding, const EncodeOp
   if (finding.error.rule == std::string_view("R-API-2"))
     refused.value().remedy =
         "Give the size of the world with --tune world_size=..., or check the unit (import takes --length-unit).";
-  if (!finding.detail.empty() && finding.error.rule == std::string_view("R-API-4"))
+  if (finding.detail.starts_with("gravity")) refused.value().remedy = "Give a smaller gravity or friction.";
+  else if (!finding.detail.empty() && finding.error.rule == std::string_view("R-API-4"))
     refused.value().remedy = "Give a smaller world_size, or wider bounds.";
   return refused;
 }
@@ -242,7 +243,8 @@ void setup_encode(Command& app, Action& action) {
       ->type_name("N")
       ->excludes(command.find("--basis"));
   add_quantity(command, key("world_size"), options->world_size, Dimension::length,
-               "How far from the origin positions get, along any axis: the position grid is as fine as that permits [512m]");
+               "How far from the origin positions get, along any axis: the position grid is as fine as that permits [512m]")
+      ->check(above_zero(Dimension::length));
   options->motion.add_to(command);
   options->contacts.add_to(command);
   add_plot_option(command, options->plot, "packets by their reasons and errors beside their bounds, over time");

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <string>
 
 #include <tactus/base/rule.h>
-#include <tactus/rigid/trigger.h>
+#include <tactus/base/text.h>
+#include <tactus/rigid/rigid_encoder.h>
 #include "cli/progress.h"
 
 namespace tactus::cli {
@@ -19,6 +21,18 @@ namespace {
 // What the grid of every stream can hold (make_thresholds() of the rigid encoder): 8 steps of position and of rotation.
 constexpr double kLeastLength = 2e-6, kMostLength = 1e6;        // [m]
 constexpr double kLeastAngle = 0.002 * std::numbers::pi / 180;  // [rad]
+
+/// What the encoder takes of a bound, with the usual ones beside it.   in  range  the same in words
+Check taken_by_encoder(double RigidTriggers::*bound, Dimension dimension, const std::string& range) {
+  const auto look = [=](const std::string& text) {
+    const auto typed = parse_quantity(text, dimension);
+    if (!typed) return typed.error();
+    RigidTriggers triggers;
+    triggers.*bound = typed->value;
+    return RigidEncoder::check(triggers, {}) ? std::string() : fmt::format("'{}': must be {}", text, range);
+  };
+  return Check(look, range);
+}
 
 }  // namespace
 
@@ -37,6 +51,15 @@ Check whole_number(std::uint64_t low, std::uint64_t high) {
     return fits ? std::string() : fmt::format("'{}': not a whole number from {} to {}", text, low, high);
   };
   return Check(look, fmt::format("{} to {}", low, high));
+}
+
+Check number_from(double low) {
+  const auto look = [low](const std::string& text) {
+    const auto value = parse_number<double>(text);
+    return value && *value >= low && std::isfinite(*value) ? std::string()
+                                                           : fmt::format("'{}': not a number from {} on", text, low);
+  };
+  return Check(look, fmt::format("{} or more", low));
 }
 
 Check number(double low, double high) {
@@ -96,10 +119,10 @@ void TriggerArguments::add_to(Command& app) {
       add_quantity(
           app, key("alpha"), triggers_.cone_angle, Dimension::angle,
           "Largest error of the normal force's direction with --haptic cone [arcsin of -p, what isotropic allows: 2.29deg at 4%]")
-          ->check(within(Dimension::angle, "0.001deg", "180deg"));
+          ->check(taken_by_encoder(&RigidTriggers::cone_angle, Dimension::angle, "above 0deg and at most 180deg"));
   share_ = add_quantity(app, key("jnd_fraction"), triggers_.perceptual_share, Dimension::fraction,
-                        "Part of what people notice that --haptic perceptual permits, 1% or more [100%]")
-               ->check(within(Dimension::fraction, "1%", "100%"));
+                        "Part of what people notice that --haptic perceptual permits [100%]")
+               ->check(taken_by_encoder(&RigidTriggers::perceptual_share, Dimension::fraction, "above 0% and at most 100%"));
   floor_ = add_quantity(app, key("force_floor"), triggers_.force_floor, Dimension::force,
                         "Forces below this use the deadband at this force [0.05N]")
                ->check(above_zero(Dimension::force));
@@ -177,12 +200,12 @@ void MotionArguments::add_to(Command& app) {
       app.add_option(
              key("gravity"), gravity_,
              "Gravity of the recording along -z [m/s^2]: updates may then choose free fall as their predictor [0: none does]")
-          ->check(number(0, 1000))
+          ->check(number_from(0))
           ->type_name("G");
   app.add_option(
          key("friction"), friction_,
          "Coefficient of friction of the recording: updates may then choose sliding to rest as their predictor [0: none does]")
-      ->check(number(0, 10))
+      ->check(number_from(0))
       ->type_name("MU")
       ->needs(gravity);
 }
@@ -261,10 +284,9 @@ SenderOptions MeshArguments::sender(const TriggerArguments& triggers) const {
   const auto typed = [](const Option* option, double value) {
     return option != nullptr && option->count() > 0 ? std::optional<double>(value) : std::nullopt;
   };
-  return {
-      .triggers = triggers.triggers(),
-      .deformable = {thresholds(triggers), typed(shares_[0], visual_share_), typed(shares_[1], haptic_share_), coding_.layered},
-      .policy = {.key_interval = triggers.key_interval()}};
+  return {.triggers = triggers.triggers(),
+          .deformable = {thresholds(triggers), typed(shares_[0], visual_share_), typed(shares_[1], haptic_share_)},
+          .policy = {.key_interval = triggers.key_interval()}};
 }
 
 TraceCoding MeshArguments::coding(const TriggerArguments& triggers) const {
