@@ -3,6 +3,7 @@
 /// any file of ours.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -12,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/options/option_needs.h"
@@ -24,8 +26,19 @@ class Option;
 
 namespace tactus::cli {
 
-/// What was typed is looked at before it is stored.   out  empty, or a sentence that names it and says what is wrong
-using Check = std::function<std::string(const std::string& typed)>;
+/// What was typed is looked at before it is stored.
+struct Check {
+  /// in   look  its answer: empty, or a sentence that names what was typed and says what is wrong
+  ///      range  what it accepts, for the list of keys: "0.1% to 100%"; empty: the help says it
+  template <std::invocable<const std::string&> Look>
+  Check(Look look, std::string range = {}) : look(std::move(look)), range(std::move(range)) {}
+
+  std::function<std::string(const std::string& typed)> look;
+  std::string range;
+};
+
+/// The name of an option that is a key of --tune: key("rings") is typed as --tune rings=M, and called so in messages.
+std::string key(std::string_view name);
 
 /// End the parsing: what was typed for an option (or was not) is a wrong use of the command.
 [[noreturn]] void refuse_option(const std::string& option, const std::string& why);
@@ -33,9 +46,9 @@ using Check = std::function<std::string(const std::string& typed)>;
 
 /// What the help says of an option or a positional argument.
 struct OptionText {
-  std::vector<std::string> names{};        ///< "-o", "--output"; of an argument its name
+  std::vector<std::string> names{};        ///< "-o", "--output"; of an argument or a key its name
   std::string value{}, help{}, heading{};  ///< value: how it is called, empty for flags and arguments
-  std::vector<std::string> choices{};      ///< all values there are; empty: any
+  std::vector<std::string> choices{};      ///< all values there are; empty: any. Of --tune the keys, with their "="
   bool is_argument = false, is_required = false, takes_value = false, is_repeated = false;
 };
 
@@ -44,10 +57,11 @@ struct CommandText {
   std::vector<std::string> words{};  ///< "tactus", "import", "csv"
   std::string help{}, heading{}, footer{};
   std::vector<OptionText> options{};
+  std::vector<OptionText> keys{};  ///< of --tune
   std::vector<CommandText> commands{};
 };
 
-/// An option or a positional argument. Its methods return it, so that they can be chained.
+/// An option, a key of --tune or a positional argument. Its methods return it, so that they can be chained.
 class Option {
  public:
   explicit Option(CLI::Option& option) : option_(&option) {}
@@ -62,12 +76,14 @@ class Option {
 
   std::size_t count() const;  ///< how often it was typed
   std::string last() const;   ///< as typed.   pre  count() > 0
-  std::string name() const;   ///< the long one: "--deadband"
+  std::string name() const;   ///< the long one: "--deadband", "--tune rings"
+  bool is_key() const;
   OptionText text() const;
 
  private:
   CLI::Option* option_;
   std::vector<std::string> choices_;
+  std::string range_;
 };
 
 /// What a command does once it was chosen.
@@ -100,26 +116,32 @@ class Command {
   /// A flag that may end in =VALUE; `read` is handed the value, `otherwise` where none was typed.
   Option* add_flag(const std::string& name, const std::string& otherwise, const std::function<void(const std::string&)>& read,
                    const std::vector<std::string>& choices, const std::string& help);
+  /// A key of --tune that takes on or off.   in  name  from key()
+  Option* add_switch(const std::string& name, bool& value, const std::string& help);
   void footer(const std::string& text);
-  void on_parsed(const std::function<void()>& look);   ///< called when all of its options are read
-  void on_chosen(const std::function<void()>& react);  ///< called when it was typed, after on_parsed
+  void on_parsed(const std::function<void()>& look);  ///< called when all of its options are read
+  /// Called when it was typed, after on_parsed.   pre  all of its options were added: --tune comes last
+  void on_chosen(const std::function<void()>& react);
 
-  const Option* find(const std::string& name) const;  ///< nullptr: it has no such option
+  const Option* find(const std::string& name) const;  ///< "--rate", "--tune rings"; nullptr: it has no such option
   std::string help_of_typed() const;                  ///< of the group of commands that was typed, or its own
   /// in   words  of a command below this one: "import", "csv";   err  there is no such command, or it was left out
   tl::expected<std::string, Failure> help_of(std::span<const std::string> words) const;
-  CommandText text() const;  ///< of it and of all below it
+  CommandText text() const;          ///< of it and of all below it
+  std::string help_of_keys() const;  ///< of --tune
 
  protected:
   CLI::App* app_;
 
  private:
   Option* keep(CLI::Option* option);
+  void add_tune();
   Failure lack() const;  ///< of one that is left out
 
   std::deque<Option> options_;
   std::deque<Command> commands_;
-  std::string needs_;  ///< the option of CMake that would bring it, empty: it is there
+  std::string needs_;               ///< the option of CMake that would bring it, empty: it is there
+  std::vector<std::string> tuned_;  ///< what was typed for --tune and is no list of KEY=VALUE
 };
 
 /// The program's own command line.

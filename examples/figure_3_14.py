@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figure 3.14 of the thesis once more: what the traffic settings of its table 3.3 cost in packets, and what they do to the force.
 
-  for seed in 1 2 3 4 5; do tactus sim rotate-push-lift --duration-scale 0.5 --tremor 0.4mm --seed $seed -o $seed.mcap; done
+  for seed in 1 2 3 4 5; do tactus sim rotate-push-lift --tune duration_scale=0.5,tremor=0.4mm --seed $seed -o $seed.mcap; done
   figure_3_14.py fig3.14.svg 1.mcap 2.mcap 3.mcap 4.mcap 5.mcap
 
 It reads like a notebook: each part ends with a table or a figure. The thesis asked people for ratings. Their place is taken by the fraction

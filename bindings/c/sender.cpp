@@ -32,8 +32,6 @@ constexpr tactus_sender_options kOptions{.size = sizeof(tactus_sender_options),
                                          .key_interval = SenderPolicy{}.key_interval,
                                          .visual_fraction = 0,
                                          .haptic_fraction = 0,
-                                         .layered = 0,
-                                         .reserved = 0,
                                          .rigid = nullptr,
                                          .deformable = nullptr,
                                          .load = nullptr};
@@ -69,7 +67,6 @@ Result<SenderOptions> options_of(const tactus_sender_options* options) noexcept 
   TACTUS_TRY(out.deformable.thresholds, bounds_of(o.deformable));
   out.deformable.visual_fraction = fraction_of(o.visual_fraction);
   out.deformable.haptic_fraction = fraction_of(o.haptic_fraction);
-  out.deformable.layered = o.layered != 0;
   TACTUS_TRY(out.load, bounds_of(o.load));
   out.policy = {.key_interval = o.key_interval,
                 .first_sequence = static_cast<std::uint16_t>(o.first_sequence),

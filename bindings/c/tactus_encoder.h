@@ -44,7 +44,7 @@ typedef struct tactus_deformable_options {
   uint32_t rings;        /* around the touched triangle; 3 */
   uint32_t quant_bits;   /* thesis; 8 */
   uint32_t models_kept;  /* thesis; 0 */
-  uint32_t layered;      /* main: separate packets for the haptic and the visual layer; 0 */
+  uint32_t layered;      /* separate packets for the haptic and the visual layer; 0 */
   uint32_t weight_sets;  /* main; 0: chosen */
   uint32_t spring_modes; /* main: modes of a network of springs that both ends compute; 0 */
   double frame_period;   /* main: ticks from shape to shape; 1 */
@@ -144,14 +144,12 @@ enum { TACTUS_BASELINE_PREVIOUS = 0, TACTUS_BASELINE_ACKNOWLEDGED = 1 };
 
 typedef struct tactus_sender_options {
   uint32_t size;
-  int32_t reduction;       /* TACTUS_REDUCTION_...; dead reckoning */
-  int32_t baseline;        /* TACTUS_BASELINE_...; previous */
-  uint32_t first_sequence; /* 1 */
-  double key_interval;     /* s; 5; 0: never */
-  double visual_fraction;     /* deformable, main: a packet corrects errors over this fraction of v; 0: chosen */
-  double haptic_fraction;     /* the same of h */
-  uint32_t layered;        /* deformable, thesis: separate packets for the layers; 0 */
-  uint32_t reserved;
+  int32_t reduction;                /* TACTUS_REDUCTION_...; dead reckoning */
+  int32_t baseline;                 /* TACTUS_BASELINE_...; previous */
+  uint32_t first_sequence;          /* 1 */
+  double key_interval;              /* s; 5; 0: never */
+  double visual_fraction;              /* deformable, main: a packet corrects errors over this fraction of v; 0: chosen */
+  double haptic_fraction;              /* the same of h */
   const tactus_rigid_bounds* rigid; /* NULL: defaults, as the next two */
   const tactus_deformable_bounds* deformable;
   const tactus_load_bounds* load;

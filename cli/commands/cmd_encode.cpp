@@ -73,9 +73,11 @@ tl::unexpected<Failure> refuse_scene(const SceneFinding& finding, const EncodeOp
   auto refused = refuse(options.input, shown(finding.object), finding.error);
   if (!finding.detail.empty()) refused.value().text += ": " + finding.detail;
   if (finding.error.rule == std::string_view("R-API-2"))
-    refused.value().remedy = "Give the size of the world with --world-size, or check the unit (import takes --length-unit).";
-  if (!finding.detail.empty() && finding.error.rule == std::string_view("R-API-4"))
-    refused.value().remedy = "Give a smaller --world-size, or wider bounds.";
+    refused.value().remedy =
+        "Give the size of the world with --tune world_size=..., or check the unit (import takes --length-unit).";
+  if (finding.detail.starts_with("gravity")) refused.value().remedy = "Give a smaller gravity or friction.";
+  else if (!finding.detail.empty() && finding.error.rule == std::string_view("R-API-4"))
+    refused.value().remedy = "Give a smaller world_size, or wider bounds.";
   return refused;
 }
 
@@ -234,14 +236,15 @@ void setup_encode(Command& app, Action& action) {
   command.add_option("-o,--output", options->output, "Stream to write, - is standard output")->required()->type_name("FILE");
   add_encoder_options(command, options->triggers, options->meshes);
   command
-      .add_option("--clusters", options->clusters,
+      .add_option(key("clusters"), options->clusters,
                   "Clusters of vertices that move alike, as the basis of bodies that turn and walk; 0: none. The trace is read "
                   "twice for it, one from a pipe from a temporary copy (--profile main) [0]")
       ->check(whole_number(0, ClusterBasis::kMaxClusters))
       ->type_name("N")
       ->excludes(command.find("--basis"));
-  add_quantity(command, "--world-size", options->world_size, Dimension::length,
-               "How far from the origin positions get, along any axis: the position grid is as fine as that permits [512m]");
+  add_quantity(command, key("world_size"), options->world_size, Dimension::length,
+               "How far from the origin positions get, along any axis: the position grid is as fine as that permits [512m]")
+      ->check(above_zero(Dimension::length));
   options->motion.add_to(command);
   options->contacts.add_to(command);
   add_plot_option(command, options->plot, "packets by their reasons and errors beside their bounds, over time");
@@ -250,9 +253,9 @@ void setup_encode(Command& app, Action& action) {
       "Examples:\n"
       "  tactus encode push.mcap -o push.tct -p 8% --visual 6mm,2deg\n"
       "  tactus encode arm.mcap -o arm.tct -p 4% --contact hand=cup,k=500N/m\n"
-      "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off --gravity 9.81 --friction 0.25\n"
+      "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off --tune gravity=9.81,friction=0.25\n"
       "  tactus encode membrane.mcap -o membrane.tct -p 2.5% --deformable-visual 0.25mm --basis 48 --plot membrane.svg\n"
-      "  tactus encode dance.mcap -o dance.tct --haptic off --deformable-visual 1mm --clusters 40");
+      "  tactus encode dance.mcap -o dance.tct --haptic off --deformable-visual 1mm --tune clusters=40");
   on_chosen<EncodeOptions>(command, action, options, run);
 }
 

@@ -168,10 +168,10 @@ void setup_join(Command& app, Action& action) {
                "End after this long [until Ctrl-C or the server's end]");
   add_key(command, options->key);
   add_playout(command, options->playout);
-  add_quantity(command, "--device-error", options->device_error, Dimension::length,
+  add_quantity(command, key("device_error"), options->device_error, Dimension::length,
                "Largest error of the device's position that is sent to the server [0.1mm]")
       ->check(within(Dimension::length, "10um", "1m"));
-  add_quantity(command, "--device-deadband", options->weber_fraction, Dimension::fraction,
+  add_quantity(command, key("device_deadband"), options->weber_fraction, Dimension::fraction,
                "In contact, largest error of the normal force that this error causes [4%]")
       ->check(within(Dimension::fraction, "0.1%", "100%"));
   add_limits(command, options->limits, "Largest scene that this end takes [see below]; may be repeated");

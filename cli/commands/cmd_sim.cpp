@@ -262,7 +262,7 @@ Outcome check_options(const SimOptions& options) {
   if (!options.pcap.empty() && !options.has_network())
     return refuse_arguments("--pcap: without a network there are no datagrams", "Give a network with --link.");
   for (const auto& [name, why] :
-       {std::pair{"--playout", "nothing is late"}, {"--client-model-scale", "there are no clients whose models it could scale"}})
+       {std::pair{"--playout", "nothing is late"}, {"--tune client_model_scale", "there are no clients whose models it could scale"}})
     if (!options.has_network() && options.common.command->find(name)->count() > 0)
       return refuse_arguments(fmt::format("{}: without a network {}", name, why), "Give --link or --uplink, or leave it out.");
   return {};
@@ -364,7 +364,7 @@ void setup_sim(Command& app, Action& action) {
       ->show_default()
       ->type_name("N");
   add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
-  add_quantity(command, "--deformable-noise", options->mesh_noise, Dimension::length,
+  add_quantity(command, key("deformable_noise"), options->mesh_noise, Dimension::length,
                "White noise added to recorded and sent shapes, RMS per axis [0]");
   options->hands.add_to(command);
   command.add_option("--replay", options->replay, "Replay the device samples of this trace instead of virtual hands")
@@ -376,7 +376,7 @@ void setup_sim(Command& app, Action& action) {
       ->one_of({"auto", "velocity-verlet", "backward-euler", "newmark", "tr-bdf2", "projective"})
       ->type_name("NAME");
   command
-      .add_option("--solver", options->solver,
+      .add_option(key("solver"), options->solver,
                   "Linear solver of implicit methods: auto, cg, cholesky or prefactored [the scene's]")
       ->one_of({"auto", "cg", "cholesky", "prefactored"})
       ->type_name("NAME");
@@ -392,7 +392,8 @@ void setup_sim(Command& app, Action& action) {
       "Simulate the same again beside it with half the step, and with a shape in each tick, and report the difference "
       "in motion, shapes, forces, energies and the work of hands [costs two to four times the time]");
   command.add_flag("--codec", options->codec,
-                   "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
+                   "Close the loop through encoder, decoder and replica; --stream, --link, --interpolate and every option and "
+                   "key of the bounds and of coding imply it");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
   Option* const interpolate = add_interpolation(command, options->replica);
   add_link(command, "--link", options->link,

@@ -150,10 +150,12 @@ void add_device_options(Command& command, DeviceArguments& arguments) {
       ->type_name("FILE");
 #endif
 #ifdef TACTUS_HAS_OPENHAPTICS
-  command.add_option("--runtime", arguments.open.runtime, "Of openhaptics: the vendor's library [libHD.so]")->type_name("FILE");
+  command.add_option(key("runtime"), arguments.open.runtime, "Of openhaptics: the vendor's library [libHD.so]")
+      ->type_name("FILE");
 #endif
 #ifdef TACTUS_HAS_INVERSE3
-  command.add_option("--service", arguments.open.service, "Of inverse3: the vendor's service on this machine [127.0.0.1:10001]")
+  command
+      .add_option(key("service"), arguments.open.service, "Of inverse3: the vendor's service on this machine [127.0.0.1:10001]")
       ->type_name("HOST:PORT");
 #endif
   add_quantity(command, "--force-limit", arguments.force, Dimension::force, "Largest force [what the device can hold]")
@@ -163,7 +165,7 @@ void add_device_options(Command& command, DeviceArguments& arguments) {
       ->check(number(0.001, 1000))
       ->show_default()
       ->type_name("FACTOR");
-  command.add_flag("--loop", arguments.loops, "Play a recording again and again");
+  command.add_switch(key("loop"), arguments.loops, "Play a recording again and again [off]");
   command.add_option("--seed", arguments.seed, "Seed of a virtual hand")
       ->check(whole_number(0, UINT64_MAX))
       ->show_default()

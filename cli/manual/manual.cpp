@@ -124,6 +124,7 @@ _tactus() {{
 {values}  esac
   if [[ -n $values ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$values" -- "$word")
+    [[ $values != *=* ]] || compopt -o nospace  # a key, whose value follows
   elif [[ $word == -* ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
   elif [[ -n $commands ]]; then
@@ -171,7 +172,7 @@ _tactus() {{
   case "$command $before" in
 {values}  esac
   if (( $#values )); then
-    compadd -a values
+    if [[ $values[1] == *= ]]; then compadd -S '' -a values; else compadd -a values; fi
   elif [[ $PREFIX == -* ]]; then
     _describe option options
   elif (( $#commands )); then
@@ -269,18 +270,23 @@ std::string option_entry(const OptionText& option) {
   return fmt::format(".TP\n{}\n{}{}\n", names, plain(option.help), option.is_required ? " (required)" : "");
 }
 
-/// In the order in which the headings come first.
-std::string options(const CommandText& command) {
+std::string key_entry(const OptionText& key) {
+  return fmt::format(".TP\n{}={}\n{}\n", bold(key.names.front()), italic(key.value), plain(key.help));
+}
+
+/// Options or keys, in the order in which their headings come first.
+std::string listed(const std::string& title, const std::vector<OptionText>& options,
+                   const std::function<std::string(const OptionText&)>& entry) {
   std::vector<std::pair<std::string, std::string>> groups;
-  for (const OptionText& option : command.options) {
+  for (const OptionText& option : options) {
     const std::string heading = option.is_argument ? "Arguments" : option.heading;
     auto group = std::ranges::find(groups, heading, &std::pair<std::string, std::string>::first);
     if (group == groups.end()) group = groups.insert(option.is_argument ? groups.begin() : groups.end(), {heading, {}});
-    group->second += option_entry(option);
+    group->second += entry(option);
   }
   std::string out;
   for (const auto& [heading, entries] : groups) out += fmt::format(".SS {}\n{}", plain(heading), entries);
-  return out.empty() ? out : ".SH OPTIONS\n" + out;
+  return out.empty() ? out : fmt::format(".SH {}\n{}", title, out);
 }
 
 /// Under their headings, as the help lists them.
@@ -323,7 +329,8 @@ std::string man_page(const CommandText& text) {
   std::ranges::transform(title, title.begin(),
                          [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
   return fmt::format(".TH \"{}\" 1 \"{}\" \"tactus {}\" \"Tactus\"\n", plain(title), TACTUS_DATE, TACTUS_VERSION) + out +
-         commands(text) + options(text) + notes(text) + see_also(text);
+         commands(text) + listed("OPTIONS", text.options, option_entry) + listed("KEYS OF \\-\\-TUNE", text.keys, key_entry) +
+         notes(text) + see_also(text);
 }
 
 }  // namespace tactus::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/options/headings.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -55,75 +56,69 @@ struct Row {
 constexpr std::string_view kBounds = "Bounds", kCoding = "Coding", kRigid = "Coding of rigid objects",
                            kDeformable = "Coding of deformable objects", kDeformation = "Simulation of deformable objects",
                            kHand = "Virtual hand", kDevice = "Device", kNetwork = "Network", kRecording = "Recording",
-                           kWatch = "Operation", kOutput = "Output";
+                           kWatch = "Operation", kOutput = "Output", kTuning = "Tuning";
 
 constexpr std::array kOptions{
-    Row{"--deadband", kBounds},
-    Row{"--haptic", kBounds},
-    Row{"--alpha", kBounds},
-    Row{"--jnd-fraction", kBounds},
-    Row{"--fixed", kBounds},
-    Row{"--force-floor", kBounds},
-    Row{"--visual", kBounds},
-    Row{"--deformable-visual", kBounds},
-    Row{"--rings", kBounds},
-    Row{"--length-unit", kBounds},
-    Row{"--profile", kCoding},
-    Row{"--key-interval", kCoding},
-    Row{"--codec", kCoding},
-    Row{"--interpolate", kRigid},
-    Row{"--heartbeat", kRigid},
-    Row{"--no-reduction", kRigid},
-    Row{"--gravity", kRigid},
-    Row{"--friction", kRigid},
-    Row{"--basis", kDeformable},
-    Row{"--clusters", kDeformable},
-    Row{"--fade", kDeformable},
-    Row{"--nugget", kDeformable},
-    Row{"--visual-share", kDeformable},
-    Row{"--haptic-share", kDeformable},
-    Row{"--quant-bits", kDeformable},
-    Row{"--keep-models", kDeformable},
-    Row{"--layered", kDeformable},
-    Row{"--check", kOutput},
-    Row{"--method", kDeformation},
-    Row{"--solver", kDeformation},
-    Row{"--deformable-noise", kDeformation},
-    Row{"--grip", kHand},
-    Row{"--duration-scale", kHand},
-    Row{"--tremor", kHand},
-    Row{"--replay", kHand},
-    Row{"--device", kDevice},
-    Row{"--playback-rate", kDevice},
-    Row{"--service", kDevice},
-    Row{"--runtime", kDevice},
-    Row{"--firmware", kDevice},
-    Row{"--force-limit", kDevice},
-    Row{"--device-error", kDevice},
-    Row{"--device-deadband", kDevice},
-    Row{"--listen", kNetwork},
-    Row{"--to", kNetwork},
-    Row{"--link", kNetwork},
-    Row{"--uplink", kNetwork},
-    Row{"--playout", kNetwork},
-    Row{"--compensation", kNetwork},
-    Row{"--client-model-scale", kNetwork},
-    Row{"--clients", kNetwork},
-    Row{"--key", kNetwork},
-    Row{"--observe", kWatch},
-    Row{"--metrics", kWatch},
-    Row{"--log", kWatch},
-    Row{"--check", kWatch},
-    Row{"--subject", kRecording},
-    Row{"--remarks", kRecording},
-    Row{"--output", kOutput},
-    Row{"--stream", kOutput},
-    Row{"--pcap", kOutput},
-    Row{"--stiffness-map", kOutput},
-    Row{"--json", kOutput},
-    Row{"--quiet", kOutput},
-    Row{"--no-progress", kOutput},
-    Row{"--force", kOutput},
+    Row{"--deadband", kBounds},    Row{"--haptic", kBounds},
+    Row{"--visual", kBounds},      Row{"--deformable-visual", kBounds},
+    Row{"--profile", kCoding},     Row{"--codec", kCoding},
+    Row{"--interpolate", kRigid},  Row{"--basis", kDeformable},
+    Row{"--check", kOutput},       Row{"--method", kDeformation},
+    Row{"--grip", kHand},          Row{"--playback-rate", kDevice},
+    Row{"--replay", kHand},        Row{"--device", kDevice},
+    Row{"--firmware", kDevice},    Row{"--force-limit", kDevice},
+    Row{"--listen", kNetwork},     Row{"--to", kNetwork},
+    Row{"--link", kNetwork},       Row{"--uplink", kNetwork},
+    Row{"--playout", kNetwork},    Row{"--compensation", kNetwork},
+    Row{"--clients", kNetwork},    Row{"--key", kNetwork},
+    Row{"--observe", kWatch},      Row{"--metrics", kWatch},
+    Row{"--log", kWatch},          Row{"--check", kWatch},
+    Row{"--subject", kRecording},  Row{"--remarks", kRecording},
+    Row{"--output", kOutput},      Row{"--stream", kOutput},
+    Row{"--pcap", kOutput},        Row{"--stiffness-map", kOutput},
+    Row{"--json", kOutput},        Row{"--quiet", kOutput},
+    Row{"--no-progress", kOutput}, Row{"--force", kOutput},
+    Row{"--tune", kTuning},
+};
+
+// What people tune seldom, behind --tune: under which heading --help-tune lists it, and the option that it once was.
+struct Key {
+  std::string_view name, heading;
+  std::string_view was = {};  ///< empty: --NAME, with - for _
+  std::string_view now = {};  ///< how it is typed in place of that; empty: NAME=...
+};
+
+constexpr std::array kKeys{
+    Key{"alpha", kBounds},
+    Key{"jnd_fraction", kBounds, "--jnd-share"},
+    Key{"fixed", kBounds},
+    Key{"force_floor", kBounds},
+    Key{"rings", kBounds},
+    Key{"length_unit", kBounds},
+    Key{"world_size", kCoding},
+    Key{"key_interval", kCoding},
+    Key{"heartbeat", kRigid},
+    Key{"reduction", kRigid, "--no-reduction", "reduction=none"},
+    Key{"gravity", kRigid},
+    Key{"friction", kRigid},
+    Key{"clusters", kDeformable},
+    Key{"fade", kDeformable},
+    Key{"nugget", kDeformable},
+    Key{"visual_fraction", kDeformable, "--visual-fraction"},
+    Key{"haptic_fraction", kDeformable, "--haptic-fraction"},
+    Key{"quant_bits", kDeformable},
+    Key{"keep_models", kDeformable, {}, "keep_models=on"},
+    Key{"layered", kDeformable, {}, "layered=on"},
+    Key{"solver", kDeformation},
+    Key{"deformable_noise", kDeformation},
+    Key{"duration_scale", kHand, "--pace"},
+    Key{"tremor", kHand},
+    Key{"loop", kDevice, {}, "loop=on"},
+    Key{"service", kDevice},
+    Key{"runtime", kDevice},
+    Key{"device_error", kDevice},
+    Key{"device_deadband", kDevice},
+    Key{"client_model_scale", kNetwork, "--told"},
 };
 
 // Of `import`, where some options mean what no other command means by them.
@@ -184,9 +179,27 @@ std::string find(const std::array<Row, N>& rows, std::string_view name, std::str
 }  // namespace
 
 std::string heading_of(std::string_view option, std::string_view group) {
+  constexpr std::string_view kTune = "--tune ";
+  if (option.starts_with(kTune)) {
+    const auto* const key = std::ranges::find(kKeys, option.substr(kTune.size()), &Key::name);
+    return std::string(key == kKeys.end() ? "Options" : key->heading);
+  }
   const std::string heading = find(kOptions, option, "Options");
   return group == "import" ? find(kImportOptions, option, heading) : heading;
 }
+std::string key_in_place_of(std::string_view option, std::span<const std::string> keys) {
+  for (const Key& key : kKeys) {
+    std::string was(key.was);
+    if (was.empty()) {
+      was = fmt::format("--{}", key.name);
+      std::ranges::replace(was, '_', '-');
+    }
+    if (was != option || std::ranges::find(keys, key.name) == keys.end()) continue;
+    return key.now.empty() ? fmt::format("{}=...", key.name) : std::string(key.now);
+  }
+  return {};
+}
+
 std::string heading_of_command(std::string_view command) { return find(kCommands, command, "More commands"); }
 
 }  // namespace tactus::cli

@@ -18,9 +18,13 @@ std::string did_you_mean(std::string_view typed, std::span<const std::string> na
 // ==== headings ====
 // Headings of the help: which option and which command stands under which.
 
-/// in   option  its long name: "--deadband";  group  above its command: "import", or the program;   out  "Options" for what only one
+/// in   option  its long name: "--deadband", "--tune rings";  group  above its command: "import", or the program;   out  "Options" for what only one
 ///      command has
 std::string heading_of(std::string_view option, std::string_view group);
+
+/// What is typed now in place of an option that has become a key of --tune: "nugget=...".   in  keys  of the command
+/// out  empty: it has none for it
+std::string key_in_place_of(std::string_view option, std::span<const std::string> keys);
 
 /// in   command  of the program, not of a group
 std::string heading_of_command(std::string_view command);

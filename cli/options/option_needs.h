@@ -19,7 +19,7 @@ enum class Subject { rigid, user, mesh, touched_mesh, deformable, deformed, pack
 /// What a trace holds.
 std::set<Subject> subjects_of(const TraceInfo& info);
 
-/// Refuse options that others switch off: --alpha without --haptic cone. Ends the parsing, as a wrong value does.
+/// Refuse options that others switch off: --tune alpha without --haptic cone. Ends the parsing, as a wrong value does.
 void check_options_agree(const Command& command);
 
 /// Say on standard error which of the options that were typed find nothing to work on.   in  place  "trace", "scene"

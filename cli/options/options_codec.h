@@ -101,6 +101,8 @@ void add_encoder_options(Command& app, TriggerArguments& triggers, MeshArguments
 
 /// Accept whole numbers from `low` to `high` only.
 Check whole_number(std::uint64_t low, std::uint64_t high);
+/// Accept numbers from `low` on; where they end, the library knows.
+Check number_from(double low);
 /// Accept numbers from `low` to `high` only.
 Check number(double low, double high);
 

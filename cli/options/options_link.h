@@ -40,8 +40,8 @@ Option* add_playout(Command& app, std::string& value);
 /// [us]; nothing: adaptive.   pre  checked by add_playout()
 std::optional<std::uint32_t> playout_of(const std::string& value);
 
-/// `--client-model-scale FACTOR`.
-Option* add_client_model_scale(Command& app, double& value);
+/// `--tune client_model_scale=FACTOR`.
+Option* add_told(Command& app, double& value);
 
 /// `--key FILE`.
 Option* add_key(Command& app, std::string& value);
@@ -62,18 +62,18 @@ inline Option* add_grip(Command& command, std::string& grip, const std::string& 
 }
 
 // ==== hand option ====
-// The options --grip, --duration-scale and --tremor of commands that simulate.
+// The option --grip and the keys duration_scale and tremor of commands that simulate.
 
 /// in  otherwise  what holds without it, for the help
 inline Option* add_duration_scale(Command& command, double& scale, const std::string& otherwise) {
   return command
-      .add_option("--duration-scale", scale,
+      .add_option(key("duration_scale"), scale,
                   "Time that hands take for each movement, times the scene's: 0.5 is twice as fast [" + otherwise + "]")
       ->check(number(0.1, 10))
       ->type_name("FACTOR");
 }
 inline Option* add_tremor(Command& command, double& rms, const std::string& otherwise) {
-  return add_quantity(command, "--tremor", rms, Dimension::length,
+  return add_quantity(command, key("tremor"), rms, Dimension::length,
                       "Tremor of free hands at 8 to 12 Hz, RMS per axis [" + otherwise + "]")
       ->check(within(Dimension::length, "0m", "10mm"));
 }

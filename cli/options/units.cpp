@@ -149,19 +149,21 @@ Option* add_quantity(Command& app, const std::string& name, double& value, Dimen
 
 Check within(Dimension dimension, const std::string& low, const std::string& high) {
   const double least = parse_quantity(low, dimension)->value, most = parse_quantity(high, dimension)->value;
-  return [=](const std::string& text) {
+  const auto look = [=](const std::string& text) {
     const auto typed = parse_quantity(text, dimension);
     if (!typed) return typed.error();
     return typed->value < least || typed->value > most ? fmt::format("'{}': must be from {} to {}", text, low, high) : "";
   };
+  return Check(look, fmt::format("{} to {}", low, high));
 }
 
 Check above_zero(Dimension dimension) {
-  return [=](const std::string& text) {
+  const auto look = [=](const std::string& text) {
     const auto typed = parse_quantity(text, dimension);
     if (!typed) return typed.error();
     return typed->value > 0 ? std::string() : fmt::format("'{}': must be above 0", text);
   };
+  return Check(look, "above 0");
 }
 
 Option* add_pose_bound(Command& app, const std::string& name, PoseBound& value, const std::string& help) {

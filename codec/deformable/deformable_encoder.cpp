@@ -346,8 +346,7 @@ std::unique_ptr<DeformableEncoder> DeformableEncoder::create(const Scene& scene,
                                                              std::unique_ptr<FollowedShape> driven) {
   const DeformableObject& o = scene.deformables[object];
   if (o.profile == DeformableProfile::thesis)
-    return std::make_unique<Of<ThesisEncoder>>(scene, object, options, policy, max_packet(o), options.layered,
-                                               initial_thesis_state(o));
+    return std::make_unique<Of<ThesisEncoder>>(scene, object, options, policy, max_packet(o), o.layered, initial_thesis_state(o));
   return std::make_unique<Of<MainEncoder>>(scene, object, options, policy, max_packet(o), o.layered, initial_main_state(o),
                                            std::move(driven));
 }

@@ -41,7 +41,6 @@ struct DeformableOptions {
   /// more bits. 0.001 <= fraction <= 1; not set: 1, but 0.7 for shapes that follow each other within 10 ms
   std::optional<double> visual_fraction{};
   std::optional<double> haptic_fraction{};  ///< main: the same of h
-  bool layered = false;  ///< thesis: separate packets for the haptic and the visual layer. main: the scene declares it
 };
 
 // ==== displacement ====

@@ -122,9 +122,10 @@ struct DeformableObject {
   std::uint8_t quant_bits = 8;       ///< thesis: q, 1..12
   bool models_kept = false;          ///< thesis: entropy models are part of the state and not restarted in every packet
   std::uint32_t frame_period = 256;  ///< main: ticks between frames, x 2^-8; with a basis also the step of motion prediction
-  bool layered = false;              ///< main: each packet belongs to the haptic or the visual layer
-  std::uint16_t fade = 0;            ///< main: fraction of the corrections outside the basis that fades per frame, x 2^-16
-  std::uint8_t weight_sets = 1;      ///< main: bit i: packets may name set i of kWeightSets; at least one
+  bool layered =
+      false;  ///< each packet belongs to the haptic or the visual layer; thesis: not declared, as decoders need not know
+  std::uint16_t fade = 0;        ///< main: fraction of the corrections outside the basis that fades per frame, x 2^-16
+  std::uint8_t weight_sets = 1;  ///< main: bit i: packets may name set i of kWeightSets; at least one
   std::vector<std::array<std::int32_t, 3>> rest;  ///< vertices, x 2^-position_exp m
   std::vector<Triangle> triangles;
   ModeBasis basis;             ///< main

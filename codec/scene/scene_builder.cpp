@@ -44,7 +44,7 @@ Result<void> apply(DeformableCoding& coding, std::uint32_t tick_rate, Deformable
   object.rings = coding.rings;
   object.quant_bits = coding.quant_bits;
   object.models_kept = coding.models_kept;
-  object.layered = coding.profile == DeformableProfile::main && coding.layered;
+  object.layered = coding.layered;
   object.frame_period = static_cast<std::uint32_t>(
       std::clamp(std::floor(256 * coding.frame_period + 0.5), 1.0, double{DeformableObject::kMaxFramePeriod}));
   if (coding.profile == DeformableProfile::main) {
@@ -160,6 +160,13 @@ std::string too_large(double metres, double bound) {
   return "a world of " + figure(metres) + " m and a bound of " + figure(1e3 * bound) +
          " mm do not go together: such a bound wants " + figure(kSteps) + " steps of the position grid, which then reaches " +
          figure(reach_of(finest)) + " m";
+}
+
+/// Why constants_of() refuses it.
+std::string too_strong(const MotionPhysics& physics, const GridExponents& grid) {
+  return "gravity of " + figure(norm(physics.gravity)) + " m/s^2, and friction that slows down by " +
+         figure(physics.friction * norm(physics.gravity)) + " m/s^2: each is from 0 to " +
+         figure(std::ldexp(MotionConstants::kMost, -grid.velocity)) + " m/s^2";
 }
 
 std::string beyond(unsigned position_exp) {
@@ -318,7 +325,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
       return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {}, too_large(metres, bound));
   }
   const auto constants = constants_of(taken.motion_, spec.grid);
-  if (!constants) return refuse(constants.error(), {});
+  if (!constants) return refuse(constants.error(), {}, too_strong(taken.motion_, spec.grid));
   const auto interest = interest_of(taken.interest_, spec.grid.position);
   if (!interest) return refuse(interest.error(), {});
   std::unordered_set<std::string> names;

@@ -28,7 +28,7 @@ struct DeformableCoding {
   std::uint8_t quant_bits = 8;  ///< thesis: q
   bool models_kept = false;     ///< thesis: entropy models are part of the state
   double frame_period = 1;      ///< main: [ticks] from shape to shape, > 0
-  bool layered = false;         ///< main: separate packets for the haptic and the visual layer
+  bool layered = false;         ///< separate packets for the haptic and the visual layer
   /// main, with a basis: fraction of what corrections added to it that fades per second, 0..1; none: 0.98, or 0 where nearly every vertex
   /// is coded in every packet, as for a declared visual bound of 0.01 mm and less
   std::optional<double> fade{};

@@ -138,7 +138,7 @@ tl::unexpected<Diagnostic> refuse(tl::unexpected<Error> error, const std::string
 Backend::Listing Inverse3Backend::list() const {
   Listing out;
   out.missing.push_back(std::string("known only to the vendor's service; run it, then --device inverse3 (at ") + kService +
-                        ", or --service HOST:PORT)");
+                        ", or --tune service=HOST:PORT)");
   return out;
 }
 

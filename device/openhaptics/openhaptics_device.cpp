@@ -246,7 +246,7 @@ Backend::Listing OpenHapticsBackend::list() const {
     listing.devices.push_back(can);
   } else {
     listing.missing.emplace_back(
-        "libHD.so: install OpenHaptics and the device's driver, from its vendor (or name it with --runtime)");
+        "libHD.so: install OpenHaptics and the device's driver, from its vendor (or name it with --tune runtime=FILE)");
   }
   return listing;
 }

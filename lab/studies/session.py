@@ -17,11 +17,7 @@ HEAD = ["motion", "group", "case", "ticks", "over", "over_position", "over_rotat
         "up_bit_per_s", "recovery_s", "bounds_widest", "bounds_widened_s", "wrong_states", "error_median_bounds",
         "error_p95_bounds", "error_worst_bounds"]
 # Options of `tactus encode`, handed on as they are typed.
-VALUES = ["-p/--deadband", "--visual", "--fixed", "--length-unit", "--haptic", "--alpha", "--jnd-fraction", "--force-floor",
-          "--heartbeat",
-          "--key-interval", "--deformable-visual", "--rings", "--basis", "--visual-share", "--haptic-share", "--profile",
-          "--fade", "--nugget"]
-FLAGS = ["--no-reduction"]
+VALUES = ["-p/--deadband", "--visual", "--haptic", "--deformable-visual", "--basis", "--profile", "--tune"]
 LOSSES = [("loss", "each for itself"), ("loss, jitter up to 30 ms", "with jitter up to 30 ms"),
           ("loss in bursts of 5", "in bursts of 5 on average")]
 
@@ -30,7 +26,7 @@ class AsTyped(argparse.Action):
     """Option and value, appended to `encoder`."""
 
     def __call__(self, parser, options, value, option=None):
-        options.encoder = [*options.encoder, option, *([] if self.nargs == 0 else [value])]
+        options.encoder = [*options.encoder, option, value]
 
 
 def parser(what):
@@ -44,11 +40,9 @@ def parser(what):
     made.add_argument("--seed", default=1, type=arguments.whole(0, 2**64 - 1), metavar="N", help="Seed of the networks [1]")
     arguments.add_report_options(made, output_help="Folder for report.md, CSV and figure", force=True)
     arguments.add_jobs(made, "Networks simulated in parallel")
-    encoder = made.add_argument_group("options of the encoder, for the recordings", "`tactus encode --help` describes them.")
+    encoder = made.add_argument_group("options of the encoder, for the recordings", "`tactus encode --help` and `tactus encode --help-tune` describe them.")
     for names in VALUES:
         encoder.add_argument(*names.split("/"), action=AsTyped, dest="encoder", metavar="VALUE", default=[])
-    for name in FLAGS:
-        encoder.add_argument(name, action=AsTyped, dest="encoder", nargs=0, default=[])
     return made
 
 

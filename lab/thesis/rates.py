@@ -140,12 +140,12 @@ def setting(rule, deadband, interpolates, thesis=None, approximate=False, option
 
 # Table 3.3, with the packets/s that the text of 3.2.5.2 gives: figure 3.14 itself has no numbers.
 SETTINGS = {
-    "S_R7": setting("off", 0.08, False, 1000, options=["--no-reduction"]), "S_R1": setting("off", 0.08, False),
+    "S_R7": setting("off", 0.08, False, 1000, options=["--tune", "reduction=none"]), "S_R1": setting("off", 0.08, False),
     "S4_NI": setting("isotropic", 0.04, False, 42.6), "S8_NI": setting("isotropic", 0.08, False),
     "S18_NI": setting("isotropic", 0.18, False), "S30_NI": setting("isotropic", 0.30, False, 25, approximate=True),
     "S4_WI": setting("isotropic", 0.04, True, 28.6), "S8_WI": setting("isotropic", 0.08, True),
     "S18_WI": setting("isotropic", 0.18, True), "S30_WI": setting("isotropic", 0.30, True, 12.3),
-    "S_NIso": setting("cone", 0.18, True, 18.2, options=["--alpha", "2.1deg"]), "S_DR": setting("fixed", 0.08, True, 33.6),
+    "S_NIso": setting("cone", 0.18, True, 18.2, options=["--tune", "alpha=2.1deg"]), "S_DR": setting("fixed", 0.08, True, 33.6),
 }
 FIXED_LENGTH = 0.0015  # [virtual length units] of S_DR
 
@@ -156,14 +156,14 @@ def bounds(options, of):
     words = ["--haptic", of["rule"], "--visual", f"{length * options.length_unit!r}m,{angle}deg"]
     words += ["-p", repr(of["deadband"])] if of["rule"] != "off" else []
     if of["rule"] == "fixed":
-        words += ["--fixed", f"{FIXED_LENGTH * options.length_unit!r}m,2deg"]
-    return words + [word for word in of["options"] if word != "--no-reduction"]
+        words += ["--tune", f"fixed={FIXED_LENGTH * options.length_unit!r}m,2deg"]
+    return words if of["rule"] == "off" else [*words, *of["options"]]
 
 
 def measure(options, scene, of, hand, seed):
     """One run; where the client interpolates, the predicted state is what a second client shows that doesn't."""
     words = ["sim", scene, "--seed", str(seed), "--grip", options.grip, "--profile", "thesis", *bounds(options, of), *hand]
-    words += ["--no-reduction"] if "--no-reduction" in of["options"] else []
+    words += of["options"] if of["rule"] == "off" else []  # of the encoder alone
     if not of["interpolates"]:
         shown = predicted = program.report([*words, "-o", "/dev/null", "-f"])
     else:
@@ -226,7 +226,7 @@ def order_of(rows, names):
 def settings(options):
     """Table 3.3 and figure 3.14: traffic control settings, by a slow and a fast hand."""
     scene = "rotate-push-lift"
-    hands = {"scene_hand": [], "faster_hand": ["--duration-scale", repr(options.duration_scale), "--tremor", f"{options.tremor!r}m"]}
+    hands = {"scene_hand": [], "faster_hand": ["--tune", f"duration_scale={options.duration_scale!r},tremor={options.tremor!r}m"]}
     jobs = [(name, hand, seed) for hand in hands for name in SETTINGS for seed in range(1, options.seeds + 1)]
     bar = program.Progress("reproduce", len(jobs), not options.quiet and not options.no_progress)
     runs = dict(zip(jobs, program.side_by_side(lambda job: measure(options, scene, SETTINGS[job[0]], hands[job[1]], job[2]), jobs,

@@ -24,6 +24,7 @@ constexpr std::size_t kMostUsers = 64;
 constexpr double kLongest = 24 * 3600.0;                                           // [s]
 constexpr std::array<std::string_view, 6> kAxes{"x", "y", "z", "rx", "ry", "rz"};  // order of the bits in Dof
 constexpr Range kPosition{-kFarthest, kFarthest};
+constexpr Range kWorld{1e-3, 1e6};
 
 std::uint8_t read_axes(TomlReader& in, const toml::table& table, const std::string& path, std::string_view key,
                        std::uint8_t fallback) {
@@ -233,10 +234,12 @@ void limit(TomlReader& in, const toml::table& root, std::string_view key, std::s
 
 void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::path& folder, Scene& scene) {
   in.allow(root, "",
-           {"name", "gravity", "duration", "floor", "touch", "compensation", "interest", "object", "msd", "deformable", "user"});
+           {"name", "gravity", "duration", "world_size", "floor", "touch", "compensation", "interest", "object", "msd",
+            "deformable", "user"});
   scene.name = in.text(root, "", "name");
   scene.gravity = in.vector(root, "", "gravity", {-1000, 1000});
   scene.duration = in.number(root, "", "duration", {kTick, kLongest});
+  if (root.contains("world_size")) scene.world_size = in.number(root, "", "world_size", kWorld);
   if (root.contains("floor")) scene.floor = in.number(root, "", "floor", kPosition);
   if (const toml::table* touch = in.table(root, "", "touch")) scene.touch = read_touch(in, *touch);
   if (const toml::table* asked = in.table(root, "", "compensation")) scene.compensation = read_compensation(in, *asked);
@@ -388,6 +391,7 @@ bool sends_loads(const Scene& scene) noexcept {
 
 SceneBuilder scene_builder(const Scene& scene, std::span<const std::optional<DrivenPhysics>> driven) {
   SceneBuilder out(kTickRate);
+  if (scene.world_size) out.world_size(*scene.world_size);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     out.rigid(object.name, object.pose, object.dof);

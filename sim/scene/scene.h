@@ -152,6 +152,7 @@ struct Scene {
   Vec3 gravity;                                   ///< [m/s^2]
   double duration = 0;                            ///< [s]
   std::optional<double> floor;                    ///< [m] height of a plane that carries the objects
+  std::optional<double> world_size;               ///< [m] how far from the origin positions get, along any axis; none: 512 m
   std::optional<SceneTouch> touch;                ///< set whenever there are users
   std::optional<SceneCompensation> compensation;  ///< none: loads are neither computed nor sent
   std::optional<SceneInterest> interest;          ///< none: clients are sent all objects in full

@@ -258,7 +258,7 @@ TEST_F(CSizes, OfAnEncoder) {
             initialised<tactus_elastic_physics_init, tactus_elastic_physics>(),
             taking<tactus_elastic_physics>(made_of(tactus_scene_builder_elastic)),
             {136}},
-           {"sender_options", 72, Direction::option, initialised<tactus_sender_options_init, tactus_sender_options>(),
+           {"sender_options", 64, Direction::option, initialised<tactus_sender_options_init, tactus_sender_options>(),
             taking<tactus_sender_options>(send)},
            {"truth",
             72,

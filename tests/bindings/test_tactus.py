@@ -276,13 +276,13 @@ def test_encoding_equals_that_of_the_program(traces, tmp_path):
     assert tactus.encode(rigid) == encoded("rigid.mcap")
     assert tactus.encode(rigid, tactus.RigidBounds(**BOUNDS)) == encoded("rigid.mcap", "-p", "4%", "--visual", "0.3mm,2deg")
     assert tactus.encode(rigid, profile="thesis") == encoded("rigid.mcap", "--profile", "thesis") != encoded("rigid.mcap")
-    assert tactus.encode(rigid, reduction=tactus.REDUCTION_NONE) == encoded("rigid.mcap", "--no-reduction")
+    assert tactus.encode(rigid, reduction=tactus.REDUCTION_NONE) == encoded("rigid.mcap", "--tune", "reduction=none")
     assert tactus.encode(mesh) == encoded("mesh.mcap")
     assert tactus.encode(mesh, profile="thesis") == encoded("mesh.mcap", "--profile", "thesis")
     assert tactus.encode(mesh, modes=12) == encoded("mesh.mcap", "--basis", "12")
     fine = tactus.DeformableBounds(visual=1e-5)  # at which what is not asked for differs
     assert tactus.encode(mesh, None, fine, modes=12) == encoded("mesh.mcap", "--basis", "12", "--deformable-visual", "0.01mm")
-    assert tactus.encode(mesh, clusters=8) == encoded("mesh.mcap", "--clusters", "8") != encoded("mesh.mcap")
+    assert tactus.encode(mesh, clusters=8) == encoded("mesh.mcap", "--tune", "clusters=8") != encoded("mesh.mcap")
     with pytest.raises(ValueError, match="one basis"):
         tactus.encode(mesh, modes=12, clusters=8)
 

@@ -176,7 +176,7 @@ TEST_F(CTrace, BecomesASceneThatDeclaresBounds) {
   EXPECT_REFUSED("R-API-12", tactus_trace_scene, trace.get(), nullptr, nullptr, 0, &size);  // the first frame is gone
 }
 
-/// As `tactus encode --clusters` does: found on the whole trace, which is then read from its front.
+/// As `tactus encode --tune clusters=N` does: found on the whole trace, which is then read from its front.
 TEST_F(CTrace, ClustersAreFoundOnIt) {
   const Trace trace = open(file.path());
   auto coding = filled<tactus_trace_coding_init, tactus_trace_coding>();

@@ -173,7 +173,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!scene) return 0;
   const Bounds bounds(in);
   auto o = filled<tactus_sender_options_init, tactus_sender_options>();
-  change(in, o.reduction, o.baseline, o.first_sequence, o.key_interval, o.visual_fraction, o.haptic_fraction, o.layered);
+  change(in, o.reduction, o.baseline, o.first_sequence, o.key_interval, o.visual_fraction, o.haptic_fraction);
   o.rigid = &bounds.rigid, o.deformable = &bounds.deformable, o.load = &bounds.load;
   tactus_sender* raw_sender = nullptr;
   if (!call(tactus_sender_create, scene.get(), &o, &raw_sender)) return 0;

@@ -121,7 +121,7 @@ def make_seeds(program, folder):
     tactus("import", "mesh", "frames", "-o", "mesh.mcap", "-q")
     tactus("encode", "mesh.mcap", "-o", "mesh.tct", "-q", "--haptic", "off")
     tactus("encode", "mesh.mcap", "-o", "thesis.tct", "-q", "--haptic", "off", "--profile", "thesis")
-    tactus("encode", "mesh.mcap", "-o", "clusters.tct", "-q", "--haptic", "off", "--clusters", "2")
+    tactus("encode", "mesh.mcap", "-o", "clusters.tct", "-q", "--haptic", "off", "--tune", "clusters=2")
     tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
     off = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
     ply = ("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
@@ -183,8 +183,8 @@ def commands(kind, name, rng, program):
         "streams": [["info", name], ["info", name, "--packets", "--json"], ["decode", name, "-o", "o.mcap", "--interpolate", "--ticks", "200"],
                     ["decode", name, "-o", "o.mcap"], ["export", "foxglove", name, "-o", "o.mcap"], *drawn(program, name)],
         "traces": [["info", name], ["encode", name, "-o", "o.tct"], ["encode", name, "-o", "o.tct", "--profile", "thesis"],
-                   ["encode", name, "-o", "o.tct", "--basis", "4"], ["encode", name, "-o", "o.tct", "--layered"],
-                   ["encode", name, "-o", "o.tct", "--clusters", "3"], *drawn(program, name), *drawn(program, "seed.tct", name),
+                   ["encode", name, "-o", "o.tct", "--basis", "4"], ["encode", name, "-o", "o.tct", "--tune", "layered=on"],
+                   ["encode", name, "-o", "o.tct", "--tune", "clusters=3"], *drawn(program, name), *drawn(program, "seed.tct", name),
                    ["export", "csv", name, "-o", "o.csv"], ["export", "mesh", name, "-o", "o"], ["compare", name, name],
                    ["export", "foxglove", name, "-o", "o.mcap", "--layout", "o.json"],
                    ["decode", "seed.tct", "-o", "o.mcap", "--like", name], ["sim", "push-1dof", "-o", "o.mcap", "--replay", name],

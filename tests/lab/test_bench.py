@@ -95,8 +95,8 @@ class Precision(unittest.TestCase):
 
 class Others(unittest.TestCase):
     def test_options_of_the_encoder_are_handed_on(self):
-        options = session.parser("").parse_args(["a.mcap", "-p", "4%", "--no-reduction", "--visual", "1mm,2deg", "--short"])
-        self.assertEqual(options.encoder, ["-p", "4%", "--no-reduction", "--visual", "1mm,2deg"])
+        options = session.parser("").parse_args(["a.mcap", "-p", "4%", "--tune", "reduction=none", "--visual", "1mm,2deg", "--short"])
+        self.assertEqual(options.encoder, ["-p", "4%", "--tune", "reduction=none", "--visual", "1mm,2deg"])
         self.assertEqual((options.traces, options.short), (["a.mcap"], True))
         self.assertEqual(session.parser("").parse_args([]).encoder, [])
 

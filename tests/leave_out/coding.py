@@ -20,8 +20,8 @@ KINDS = {
 WANTED = {
     ("--profile", "thesis"): set(),
     ("--profile", "main"): {"look-ahead", "smoothing"},
-    ("--profile", "main", "--no-reduction"): set(),
-    ("--profile", "thesis", "--gravity", "9.81", "--friction", "0.3"): {"predictors"},
+    ("--profile", "main", "--tune", "reduction=none"): set(),
+    ("--profile", "thesis", "--tune", "gravity=9.81,friction=0.3"): {"predictors"},
 }
 
 

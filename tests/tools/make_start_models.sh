@@ -26,7 +26,7 @@ rigid_streams() {
   stream thesis -p 4% --visual 0.3mm,2deg --profile thesis
   for p in 4 30; do
     "$tactus" encode "$scratch/$scene-$seed-p$p.mcap" -q -o "$scratch/$scene-$seed-p$p-motion.tct" -p "$p%" --visual 0.3mm,2deg \
-      --gravity 9.81 --friction 0.7 >/dev/null
+      --tune gravity=9.81,friction=0.7 >/dev/null
   done
 }
 
@@ -47,8 +47,8 @@ deformable_streams() {
   stream fine --deformable-visual 0.01mm --haptic off
   for basis in 0 48; do
     for v in 0.125 0.25 0.5; do
-      for p in 2.5 10; do stream "layered-v$v-p$p-k$basis" --layered --deformable-visual "${v}mm" -p "$p%" --basis "$basis"; done
-      stream "nuggets-v$v-k$basis" --nugget all --deformable-visual "${v}mm" --basis "$basis"
+      for p in 2.5 10; do stream "layered-v$v-p$p-k$basis" --tune layered=on --deformable-visual "${v}mm" -p "$p%" --basis "$basis"; done
+      stream "nuggets-v$v-k$basis" --tune nugget=all --deformable-visual "${v}mm" --basis "$basis"
     done
   done
 }

@@ -98,6 +98,85 @@ TEST(Command, TextsHoldWhatTheHelpHolds) {
   EXPECT_TRUE(option.takes_value);
 }
 
+// ==== keys of --tune ====
+
+/// A command with keys, which was given these words.
+struct Tuned {
+  explicit Tuned(std::vector<std::string> words) {
+    Command& command = program.add_command("encode", "");
+    command.add_option("-o,--output", output, "The output")->type_name("FILE");
+    rings = command.add_option(key("rings"), count, "Rings of neighbours [3]")->check([](const std::string& typed) {
+      return typed == "99" ? std::string("'99': too many") : std::string();
+    });
+    fixed = command.add_option(key("fixed"), bound, "The bound [none]")->type_name("LENGTH,ANGLE");
+    command.add_switch(key("layered"), layered, "In layers [off]");
+    command.on_chosen([] {});
+    words.insert(words.begin(), "encode");
+    failure = failure_of(program, action, words);
+  }
+
+  Program program{"tactus", ""};
+  Action action;
+  std::string output, bound;
+  std::uint32_t count = 3;
+  bool layered = false;
+  const Option *rings = nullptr, *fixed = nullptr;
+  Failure failure;
+};
+
+TEST(Keys, AreGivenOneByOneOrInAList) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--tune", "rings=5", "--tune", "layered=on", "--tune", "fixed=1mm,2deg"},
+        {"--tune", "rings=5,fixed=1mm,2deg,layered=on"},
+        {"--tune=fixed=1mm,2deg", "--tune=layered=on,rings=5"}}) {
+    const Tuned tuned(words);
+    EXPECT_EQ(tuned.failure.text, "");
+    EXPECT_EQ(tuned.count, 5U);
+    EXPECT_EQ(tuned.bound, "1mm,2deg");
+    EXPECT_TRUE(tuned.layered);
+    EXPECT_EQ(tuned.rings->count(), 1U);
+    EXPECT_EQ(tuned.rings->name(), "--tune rings");
+    EXPECT_EQ(tuned.rings->last(), "5");
+  }
+  const Tuned untuned({"-o", "x"});
+  EXPECT_EQ(untuned.rings->count(), 0U);
+}
+
+TEST(Keys, WrongUsesNameWhatWouldBeRight) {
+  const auto failure = [](std::vector<std::string> words) { return Tuned(std::move(words)).failure; };
+  EXPECT_EQ(failure({"--tune", "ring=5"}).text, "tactus encode has no key ring of --tune. Did you mean rings?");
+  EXPECT_EQ(failure({"--tune", "ring=5"}).remedy, "`tactus encode --help-tune` lists the keys.");
+  EXPECT_EQ(failure({"--tune", "rings=99"}).text, "--tune rings: '99': too many");
+  EXPECT_EQ(failure({"--tune", "rings=99"}).remedy, "`tactus encode --help-tune` lists the keys.");
+  EXPECT_EQ(failure({"--tune", "layered=yes"}).text, "--tune layered: yes not in {on,off}");
+  for (const char* typed : {"rings", "rings=", "=5", ",rings=5", "rings=5,"})
+    EXPECT_EQ(failure({"--tune", typed}).text, std::string("--tune: '") + typed + "': must be KEY=VALUE");
+  EXPECT_EQ(failure({"--tune.rings", "5"}).text, "--tune: '5': must be KEY=VALUE") << "a key is no option";
+  EXPECT_EQ(failure({"--rings", "5"}).text, "tactus encode has no option --rings");
+  EXPECT_EQ(failure({"--rings", "5"}).remedy, "--rings is now --tune rings=...");
+  EXPECT_EQ(failure({"--layered"}).remedy, "--layered is now --tune layered=on.");
+  EXPECT_EQ(failure({"--jnd-share", "5%"}).text, "tactus encode has no option --jnd-share");
+  EXPECT_EQ(failure({"--jnd-share", "5%"}).remedy, "`tactus encode --help` lists what it takes.") << "nor such a key";
+}
+
+TEST(Keys, AreListedApartFromTheOptions) {
+  Tuned tuned({});
+  Command& command = tuned.program.command("encode");
+  const std::vector<std::string> words{"encode"};
+  const std::string help = tuned.program.help_of(words).value();
+  EXPECT_EQ(help.find("rings"), std::string::npos) << help;
+  EXPECT_NE(help.find("--tune KEY=VALUE"), std::string::npos) << help;
+  EXPECT_NE(help.find("tactus encode --help-tune lists the keys"), std::string::npos) << help;
+  const std::string keys = command.help_of_keys();
+  EXPECT_NE(keys.find("  fixed=LENGTH,ANGLE              The bound [none]\n"), std::string::npos) << keys;
+  EXPECT_EQ(keys.find("--output"), std::string::npos);
+  const CommandText text = command.text();
+  ASSERT_EQ(text.keys.size(), 3U);
+  EXPECT_EQ(text.keys[1].names, std::vector<std::string>{"fixed"});
+  EXPECT_EQ(text.options.back().names, std::vector<std::string>{"--tune"});
+  EXPECT_EQ(text.options.back().choices, (std::vector<std::string>{"rings=", "fixed=", "layered="}));
+}
+
 // ==== suggestion ====
 
 const std::vector<std::string> kNames{"encode", "decode", "sim", "serve", "--quiet"};

@@ -32,9 +32,9 @@ SharedScene scene_of(const TriMesh& mesh, const Coding& coding, std::uint32_t ti
   return testing::shared(std::move(spec));
 }
 
-SenderOptions options(std::optional<double> fraction = {}, bool layered = false) {
+SenderOptions options(std::optional<double> fraction = {}) {
   return {.triggers = {},
-          .deformable = {.thresholds = kThresholds, .visual_fraction = fraction, .haptic_fraction = fraction, .layered = layered},
+          .deformable = {.thresholds = kThresholds, .visual_fraction = fraction, .haptic_fraction = fraction},
           .policy = {.key_interval = 0}};
 }
 
@@ -51,7 +51,7 @@ struct Walk {
 Walk walked(const Coding& coding, std::int64_t frames, std::optional<double> fraction = {}, std::uint32_t tick_rate = 60) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   DentedSheet sheet(mesh, kSquares);
-  SheetEnds ends(scene_of(mesh, coding, tick_rate), options(fraction, coding.layered));
+  SheetEnds ends(scene_of(mesh, coding, tick_rate), options(fraction));
   Walk out;
   SheetFrame frame;
   for (std::int64_t k = 0; k < 3 * frames; ++k) {

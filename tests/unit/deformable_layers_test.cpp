@@ -25,16 +25,16 @@ SharedScene layered_scene(const TriMesh& mesh, std::size_t modes, std::uint8_t s
   return testing::shared(std::move(spec));
 }
 
-/// Either profile, in layers or not; of profile thesis the sender alone knows.
+/// Either profile, in layers or not; of profile thesis no declaration says it.
 SharedScene scene_of(const TriMesh& mesh, DeformableProfile profile, bool layered, std::uint8_t span = 1) {
   SceneSpec spec = testing::sheet_spec(mesh, profile);
-  spec.deformables[0].layered = profile == DeformableProfile::main && layered;
+  spec.deformables[0].layered = layered;
   spec.baseline_span = span;
   return testing::shared(std::move(spec));
 }
 
-SenderOptions options(double key_interval, bool layered = true, const DeformableThresholds& thresholds = {}) {
-  return {.triggers = {}, .deformable = {.thresholds = thresholds, .layered = layered}, .policy = {.key_interval = key_interval}};
+SenderOptions options(double key_interval, const DeformableThresholds& thresholds = {}) {
+  return {.triggers = {}, .deformable = {.thresholds = thresholds}, .policy = {.key_interval = key_interval}};
 }
 
 class LayeredBounds : public ::testing::TestWithParam<std::tuple<DeformableThresholds, std::size_t, double>> {};
@@ -43,7 +43,7 @@ TEST_P(LayeredBounds, HoldAfterEachPacket) {
   const auto& [thresholds, modes, noise] = GetParam();
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   const SharedScene scene = layered_scene(mesh, modes);
-  SheetEnds ends(scene, options(1, true, thresholds));
+  SheetEnds ends(scene, options(1, thresholds));
   DentedSheet sheet(mesh, kSquares, noise);
   BoundWatch rendered(*scene, thresholds), seen(*scene, thresholds);
   for (std::int64_t k = 0; k < kFrames; ++k) {
@@ -191,7 +191,7 @@ TEST(DeformableLayers, RequestedKeyPackets) {
   for (const DeformableProfile profile : {DeformableProfile::thesis, DeformableProfile::main}) {
     for (const bool layered : {false, true}) {
       for (const bool touched : {false, true}) {
-        SheetEnds ends(scene_of(mesh, profile, layered), options(0, layered));
+        SheetEnds ends(scene_of(mesh, profile, layered), options(0));
         const SheetFrame frame{testing::moved_by(mesh.vertices.size(), {0, 0, 0.01}),
                                touched ? std::optional(SurfaceTouch{5, 1, 500}) : std::nullopt};
         std::int64_t tick = 0;
@@ -234,7 +234,7 @@ TEST(DeformableLayers, AnyPacketMayBeLost) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   for (const DeformableProfile profile : {DeformableProfile::thesis, DeformableProfile::main}) {
     for (const bool layered : {false, true}) {
-      SheetEnds ends(scene_of(mesh, profile, layered, 3), options(0.5, layered));
+      SheetEnds ends(scene_of(mesh, profile, layered, 3), options(0.5));
       DentedSheet sheet(mesh, kSquares);
       BoundWatch seen(*ends.sender.scene(), {});
       std::mt19937_64 random(3);
@@ -341,7 +341,7 @@ TEST(DeformableLayers, ThesisListsWhatIsRenderedInAPacketOfItsOwn) {
 TEST(DeformableLayers, ThesisKeyPacketsListAVertexAtLeast) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   for (const bool layered : {false, true}) {
-    SheetEnds ends(scene_of(mesh, DeformableProfile::thesis, layered), options(0.1, layered));
+    SheetEnds ends(scene_of(mesh, DeformableProfile::thesis, layered), options(0.1));
     for (std::int64_t k = 0; k < 60; ++k) {
       const SheetFrame frame{testing::moved_by(mesh.vertices.size(), {0, 0, k % 13 < 6 ? 0.01 : 0}),
                              k % 2 == 0 ? std::optional(SurfaceTouch{5, 1, 500}) : std::nullopt};

@@ -136,7 +136,7 @@ TEST(HdRuntime, AMissingLibraryIsSaid) {
   ASSERT_FALSE(runtime);
   EXPECT_STREQ(runtime.error().error.rule, "R-DEV-3");
   EXPECT_EQ(runtime.error().file, "/nowhere/libHD.so");
-  EXPECT_NE(runtime.error().remedy.find("--runtime"), std::string::npos);
+  EXPECT_NE(runtime.error().remedy.find("--tune runtime="), std::string::npos);
 }
 
 TEST(HdRuntime, ALibraryWithoutItsFunctionsIsRefused) {

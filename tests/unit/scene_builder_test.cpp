@@ -119,7 +119,7 @@ TEST(SceneBuilder, DeformableObjectsAndTheirCoding) {
   EXPECT_EQ(b.profile, DeformableProfile::thesis);
   EXPECT_EQ(b.quant_bits, 11);
   EXPECT_TRUE(b.models_kept);
-  EXPECT_FALSE(b.layered) << "the sender's affair";
+  EXPECT_TRUE(b.layered);
   EXPECT_TRUE(b.basis.steps.empty()) << "of profile main alone";
 }
 
@@ -245,6 +245,19 @@ TEST(SceneBuilder, AWorldHasASize) {
   EXPECT_TRUE(SceneBuilder().rigid("a", {}, Dof::none).declare_bounds(fine, {}).world_size(1e5).build()) << "nothing moves";
   const auto away = SceneBuilder().rigid("a", {{600, 0, 0}, {}}).build();
   EXPECT_NE(away.error().detail.find("512 m"), std::string::npos) << away.error().detail;
+}
+
+TEST(SceneBuilder, GravityAndFrictionBeyondTheGridAreReported) {
+  const auto detail = [](double gravity, double friction) {
+    const auto built = SceneBuilder().rigid("a").motion({{0, 0, -gravity}, friction}).build();
+    return built ? std::string("taken") : built.error().detail;
+  };
+  EXPECT_EQ(detail(9.81, 100), "taken");
+  EXPECT_EQ(detail(0, 1e9), "taken") << "without gravity nothing slides to rest";
+  EXPECT_EQ(detail(2048, 0), "taken");
+  EXPECT_NE(detail(2049, 0).find("gravity of 2049 m/s^2"), std::string::npos) << detail(2049, 0);
+  EXPECT_NE(detail(9.81, 300).find("2943 m/s^2: each is from 0 to 2048 m/s^2"), std::string::npos) << detail(9.81, 300);
+  EXPECT_NE(detail(9.81, -1), "taken");
 }
 
 TEST(SceneBuilder, HowManyAreTooManyIsReported) {

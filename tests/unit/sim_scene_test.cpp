@@ -86,6 +86,7 @@ const std::vector<Broken>& broken() {
       {"object as a table", kHead + "[object]\nname = \"c\"\n", "R-SCN-5", 4, "object"},
       {"not a number", "floor = nan\n" + kHead + kCube, "R-SCN-6", 1, "floor"},
       {"infinite", "floor = -inf\n" + kHead + kCube, "R-SCN-6", 1, "floor"},
+      {"a world of no size", "world_size = 0\n" + kHead + kCube, "R-SCN-6", 1, "world_size"},
       {"negative damping", kHead + kCube + "damping = -0.1\n", "R-SCN-6", 10, "object.damping"},
       {"turn about two axes", kHead + kCube + "dof = [\"rx\", \"rz\"]\n", "R-SCN-6", 10, "object.dof"},
       {"long quaternion", kHead + kCube + "rotation = [1, 1, 0, 0]\n", "R-SCN-6", 10, "object.rotation"},
@@ -281,6 +282,14 @@ TEST(Scene, OfATraceNamesNoPaths) {
   const auto again = parse_attached_scene(shipped->text);
   ASSERT_TRUE(again) << to_string(again.error());
   EXPECT_EQ(again->objects.at(0).surface.triangles, shipped->objects.at(0).surface.triangles);
+}
+
+TEST(Scene, AWorldHasASize) {
+  const auto grid = [](const std::string& text) {
+    return scene_builder(parse_scene(text, "t.toml").value()).build().value()->grid.position;
+  };
+  EXPECT_EQ(grid(kHead + kCube), 22);
+  EXPECT_EQ(grid("world_size = 5000\n" + kHead + kCube), 18);
 }
 
 TEST(Scene, ItsStreamStartsFromTheFirstPoses) {

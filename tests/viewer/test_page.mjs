@@ -22,7 +22,7 @@ function makePages() {
   writeFileSync(file("evil.toml"), scene.replaceAll('"cube"', `"${evil}"`));
   for (const [name, source] of [["evil", "evil.toml"], ["membrane", "membrane-large"]]) {
     run("sim", source, "--duration", "3s", "-o", `${name}.mcap`, "-f", "-q");
-    run("encode", `${name}.mcap`, "-o", `${name}.tct`, "--key-interval", "1s", "-f", "-q");
+    run("encode", `${name}.mcap`, "-o", `${name}.tct`, "--tune", "key_interval=1s", "-f", "-q");
     run("view", `${name}.tct`, "--truth", `${name}.mcap`, "-f", "-q");
   }
 }

@@ -24,7 +24,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "lab"))
 from common import figure  # noqa: E402
 
 BOUNDS = "0.125", "0.25", "0.5", "1", "2", "4", "8"          # largest error [units]
-SETTINGS = {"no basis": [], "24 clusters": ["--clusters", "24"], "40 clusters": ["--clusters", "40"], "64 clusters": ["--clusters", "64"]}
+SETTINGS = {"no basis": [], "24 clusters": ["--tune", "clusters=24"], "40 clusters": ["--tune", "clusters=40"], "64 clusters": ["--tune", "clusters=64"]}
 COLUMNS = ("clip", "vertices", "frames", "setting", "bound_units", "bits_per_vertex", "basis_bytes", "kg_percent", "largest_units", "over",
            "encode_us", "decode_us")
 FAMC = pathlib.Path(__file__).with_name("famc.csv")
@@ -50,7 +50,7 @@ def measure_clip(folder):
 
 
 def encode(tactus, trace, stream, bound, options):
-    command = [tactus, "encode", trace, "-o", stream, "-f", "--json", "--haptic", "off", "--key-interval", "0",
+    command = [tactus, "encode", trace, "-o", stream, "-f", "--json", "--haptic", "off", "--tune", "key_interval=0",
                "--deformable-visual", bound + "mm", *options]
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
