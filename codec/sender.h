@@ -144,7 +144,7 @@ class Sender {
   /// per packet.
   void forget_last(std::size_t substream) noexcept;
 
-  /// Know the device of the one receiver, which may drive objects then (SceneBuilder::driven()): those that it pushes or holds are sent when
+  /// Know the device of the one receiver, which may drive objects then (RigidOptions::driven): those that it pushes or holds are sent when
   /// they leave the way that the receiver works out from its own device. Without it the scene's driven objects are coded as any other.
   /// in   path  where the device is at each tick that is encoded, with all packets up to then.   allocates
   void know(std::shared_ptr<const DevicePath> path);
