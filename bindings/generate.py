@@ -87,7 +87,7 @@ def ctype(kind, interface):
     if base in interface.handles:
         return "c_void_p" if stars == 1 else "POINTER(c_void_p)"
     if base == "char":
-        return "c_char_p"
+        return "c_char_p" if stars == 1 else "POINTER(c_char_p)"
     fields = interface.structs.get(base)
     is_one = base == "tactus_error" or (fields and fields[0][1] == "size")  # else the pointer may be to an array
     return f"POINTER({base})" if is_one else "c_void_p"

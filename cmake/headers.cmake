@@ -3,7 +3,7 @@
 # folders, codec/ being the top one.
 file(GLOB entries LIST_DIRECTORIES true CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/codec/*)
 list(FILTER entries EXCLUDE REGEX "CMakeLists.txt$")
-list(APPEND entries ${PROJECT_SOURCE_DIR}/session ${PROJECT_SOURCE_DIR}/io/trace ${PROJECT_SOURCE_DIR}/io/net ${PROJECT_SOURCE_DIR}/io/seal
+list(APPEND entries ${PROJECT_SOURCE_DIR}/session ${PROJECT_SOURCE_DIR}/session/session.h ${PROJECT_SOURCE_DIR}/io/trace ${PROJECT_SOURCE_DIR}/io/net ${PROJECT_SOURCE_DIR}/io/seal
   ${PROJECT_SOURCE_DIR}/metrics ${PROJECT_SOURCE_DIR}/sim ${PROJECT_SOURCE_DIR}/device)
 file(REMOVE_RECURSE ${PROJECT_BINARY_DIR}/include/tactus)
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/tactus)

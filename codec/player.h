@@ -32,6 +32,12 @@ class Player {
   /// Tick of the next packet; nothing at the end.   err  as play()
   Result<std::optional<std::int64_t>> next_tick() noexcept;
 
+  /// What Receiver::pose() and Receiver::displacements() show.
+  Pose pose(std::uint32_t object, std::int64_t tick) const noexcept { return receiver_.pose(object, tick); }
+  std::span<const float> displacements(std::size_t object, std::int64_t tick) noexcept {
+    return receiver_.displacements(object, tick);
+  }
+
   Receiver& receiver() noexcept { return receiver_; }
   Replica& replica() noexcept { return receiver_.replica(); }
   const Scene& scene() const noexcept { return *reader_.scene(); }

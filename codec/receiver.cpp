@@ -24,6 +24,9 @@ struct Receiver::Impl {
         deformables(decoders(*scene, options.limits, device)),
         replica(*scene, options.replica, shapes(deformables), device.path.get()) {
     if (scene->loads) loads.emplace(*scene, options.limits, initial_loads(*scene), *scene);
+    std::size_t vertices = 0;
+    for (const DeformableObject& object : scene->deformables) vertices = std::max(vertices, object.rest.size());
+    metres.resize(3 * vertices);
   }
 
   using Decoders = std::vector<std::unique_ptr<DeformableDecoder>>;
@@ -50,6 +53,7 @@ struct Receiver::Impl {
   Decoders deformables;
   std::optional<SubstreamDecoder<LoadDecoder>> loads;
   Replica replica;
+  std::vector<float> metres;  // of the shape that was asked for last
 };
 
 Receiver::Receiver(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
@@ -104,6 +108,29 @@ Result<DecodedPacket> Receiver::push_numbered(std::uint64_t number, std::span<co
 
 void Receiver::skip_number(std::uint64_t number) noexcept { impl_->replica.skip_number(number); }
 
+void Receiver::know(std::shared_ptr<const DevicePath> path) {
+  impl_->path = std::move(path);
+  impl_->replica.know(*impl_->path);
+  const Scene& scene = *impl_->scene;
+  for (std::size_t i = 0; i < scene.deformables.size(); ++i)
+    if (const DeformableObject& object = scene.deformables[i]; object.body)
+      impl_->deformables[i]->know(std::make_unique<DrivenShape>(scene, object, *impl_->path));
+}
+
+Pose Receiver::pose(std::uint32_t object, std::int64_t tick) const noexcept {
+  return to_pose(impl_->replica.pose(object, tick), impl_->scene->grid.position);
+}
+
+std::span<const float> Receiver::displacements(std::size_t object, std::int64_t tick) noexcept {
+  const auto shape = impl_->replica.displacements(object, tick);
+  auto out = impl_->metres.begin();
+  for (const auto& vertex : shape) {
+    const Vec3 u = to_metres(vertex, impl_->scene->grid.position);
+    for (const double component : {u.x, u.y, u.z}) *out++ = static_cast<float>(component);
+  }
+  return std::span(impl_->metres).first(3 * shape.size());
+}
+
 Replica& Receiver::replica() noexcept { return impl_->replica; }
 const SharedScene& Receiver::scene() const noexcept { return impl_->scene; }
 const RigidState& Receiver::object_after(const DecodedPacket& packet, std::uint32_t object) const noexcept {
@@ -111,7 +138,7 @@ const RigidState& Receiver::object_after(const DecodedPacket& packet, std::uint3
 }
 const RigidState& Receiver::object(std::uint32_t object) const noexcept { return impl_->rigid.newest().objects[object]; }
 
-std::span<const std::array<std::int32_t, 3>> Receiver::displacements(std::size_t object) const noexcept {
+std::span<const std::array<std::int32_t, 3>> Receiver::decoded_displacements(std::size_t object) const noexcept {
   return impl_->deformables[object]->displacements();
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 
+#include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
 #include <tactus/client/replica.h>
 #include <tactus/load/load_state.h>
@@ -68,7 +69,17 @@ class Receiver {
   /// This number of a session is not lost, and no packet of rigid objects has it: the replica need not interpolate over it.
   void skip_number(std::uint64_t number) noexcept;
 
-  /// What the client shows.
+  /// Pose of a rigid object as shown at `tick`: what Replica::pose() has in integers.
+  /// in   object  its index in the scene: Scene::find()     pre  it is one of the scene
+  /// out  [m], world frame   time about 50 ns, no allocation; more on Replica::pose()
+  Pose pose(std::uint32_t object, std::int64_t tick) const noexcept;
+  /// Shape of a deformable object as shown at `tick`: what Replica::displacements() has in integers.
+  /// in   object  as pose(), among the deformable objects
+  /// out  V x 3 [m] from the rest shape, world frame, x y z of vertex 0 first, as DeformableTruth. Valid until the next call.
+  /// time O(V * modes), no allocation.
+  std::span<const float> displacements(std::size_t object, std::int64_t tick) noexcept;
+
+  /// The same in integers, which are equal at every client, and levels of detail.
   Replica& replica() noexcept;
 
   const SharedScene& scene() const noexcept;
@@ -77,7 +88,7 @@ class Receiver {
   /// Newest state of a rigid object, by its index in the scene.
   const RigidState& object(std::uint32_t object) const noexcept;
   /// Newest decoded displacements of a deformable object, V x 3, x 2^-position_exp m.   pre  object < scene.deformables.size()
-  std::span<const std::array<std::int32_t, 3>> displacements(std::size_t object) const noexcept;
+  std::span<const std::array<std::int32_t, 3>> decoded_displacements(std::size_t object) const noexcept;
   /// Vectors of a rigid object's load (kExternal, kHold, kPushes ..) at a tick that is shown, x 2^-force_exp N: of the newest state held
   /// that is not later. Empty: the scene has no loads, or the object cannot move. Valid until the next push().   time O(log objects)
   std::span<const GridForce> load(std::uint32_t object, std::int64_t tick) const noexcept;

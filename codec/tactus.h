@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Scenes, packets and streams of tactus::codec; sessions over a network are tactus::session (session/). A Sender turns true states
-/// into packets; a Receiver turns packets into a replica:
+/// Scenes, packets and streams of tactus::codec; <tactus/session.h> has sessions over a network. A Sender turns true states into packets; a
+/// Receiver turns packets into what a client shows:
 ///
 ///   #include <cstdio>
 ///   #include <tactus/tactus.h>
@@ -18,11 +18,20 @@
 ///       for (const tactus::Packet& packet : *packets)      // mostly none: the receiver predicts
 ///         if (!receiver->push(packet.bytes)) return 1;     // this is where a network would be
 ///     }
-///     const tactus::Pose shown = tactus::to_pose(receiver->replica().pose(0, 999), (*scene)->grid.position);
+///     const tactus::Pose shown = receiver->pose(0, 999);
 ///     std::printf("the client shows x = %.3f m\n", shown.position.x);
 ///   }
 ///
-/// examples/ continues with losses, sessions, deformable objects and traces.
+/// Integers that are equal at every client are in receiver->replica(). examples/ continues with losses, sessions, deformable objects and traces.
+///
+/// These headers are the interface, beside those of session.h:
+///   sender.h, receiver.h, player.h      true states to packets, packets to what is shown, a stream file tick by tick
+///   scene/scene_builder.h, scene.h      what both ends declare; scene_syntax.h: as bytes
+///   file/stream_file.h                  packets in a file
+///   client/replica.h                    what is shown in integers, levels of detail; stiffness_reduction.h: forces that come late
+///   deformable/motion_clusters.h        a basis for a mesh, found on a recording
+///   base/geometry.h, result.h           vectors and rotations; errors
+/// The other ones that are installed are there because these include them: they may change in any version.
 ///
 /// Errors are values: every function that can fail returns a Result, whose Error names a class and a rule of the specification.
 /// describe() explains it, remedy() suggests a fix, advice() says how a receiver should react. Nothing throws but std::bad_alloc,
@@ -34,15 +43,11 @@
 #include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
 #include <tactus/client/replica.h>
-#include <tactus/deformable/displacement.h>
+#include <tactus/client/stiffness_reduction.h>
 #include <tactus/deformable/motion_clusters.h>
 #include <tactus/file/stream_file.h>
-#include <tactus/load/load_state.h>
-#include <tactus/packet/packet.h>
 #include <tactus/player.h>
 #include <tactus/receiver.h>
-#include <tactus/rigid/rigid_state.h>
-#include <tactus/rigid/trigger.h>
 #include <tactus/scene/scene.h>
 #include <tactus/scene/scene_builder.h>
 #include <tactus/scene/scene_syntax.h>

@@ -16,15 +16,16 @@ int main(int argc, char** argv) {
     FILE* file = fopen(argv[i + 1], "rb");
     if (file == NULL) return perror(argv[i + 1]), 1;
     if (tactus_player_open(files[i], fread(files[i], 1, sizeof files[i], file), NULL, &players[i], &error) != TACTUS_OK)
-      return fprintf(stderr, "%s: %s (%s)\n", argv[i + 1], tactus_error_text(&error), error.rule), 1;
+      return fprintf(stderr, "%s: %s (%s)\n", argv[i + 1], error.text, error.rule), 1;
   }
-  for (int64_t tick = 0, next[2] = {0, 0}; next[0] != INT64_MAX || next[1] != INT64_MAX; ++tick) {
+  tactus_player_info at[2] = {{.size = sizeof *at}, {.size = sizeof *at}};
+  for (int64_t tick = 0; at[0].next_tick != INT64_MAX || at[1].next_tick != INT64_MAX; ++tick) {
     tactus_pose shown[2];
     for (int i = 0; i < 2; ++i) {
       tactus_packet_info info = {.size = sizeof info};
       for (; tactus_player_play(players[i], tick, &info, &error) == TACTUS_OK; ++packets[i]) bytes[i] += info.bytes;
-      if (tactus_player_next_tick(players[i], &next[i], &error) != TACTUS_OK) next[i] = INT64_MAX;
-      if (tactus_receiver_poses(tactus_player_receiver(players[i]), tick, 0, 1, &shown[i], &error) != TACTUS_OK)
+      if (tactus_player_get(players[i], &at[i], &error) != TACTUS_OK) at[i].next_tick = INT64_MAX;
+      if (tactus_receiver_poses(tactus_player_receiver(players[i]), tick, 0, 1, &shown[i], NULL, &error) != TACTUS_OK)
         return fprintf(stderr, "%s: no rigid object\n", argv[i + 1]), 1;
     }
     const double *a = shown[0].position, *b = shown[1].position;
@@ -32,7 +33,7 @@ int main(int argc, char** argv) {
   }
   for (int i = 0; i < 2; tactus_player_destroy(players[i++])) {
     uint64_t hash = 0;
-    tactus_receiver_state_hash(tactus_player_receiver(players[i]), 0, &hash, NULL);
+    tactus_receiver_hash(tactus_player_receiver(players[i]), 0, &hash, 0, NULL, NULL);
     printf("%s: %zu packets, %zu bytes, state %016llx\n", argv[i + 1], packets[i], bytes[i], (unsigned long long)hash);
   }
   return printf("at most %.3f mm apart\n", 1e3 * farthest) < 0;

@@ -61,10 +61,11 @@ int main() {
       bytes += packet.bytes.size();
       if (!receiver->push(packet.bytes)) return 1;
     }
-    const auto shown = receiver->replica().displacements(0, tick);
-    for (std::size_t v = 0; v < shown.size(); ++v) {
-      const tactus::Vec3 u{shape[3 * v], shape[3 * v + 1], shape[3 * v + 2]};
-      worst = std::max(worst, tactus::norm(u - tactus::to_metres(shown[v], (*scene)->grid.position)));
+    const auto shown = receiver->displacements(0, tick);
+    for (std::size_t v = 0; v < shown.size(); v += 3) {
+      const tactus::Vec3 off{double{shown[v]} - shape[v], double{shown[v + 1]} - shape[v + 1],
+                             double{shown[v + 2]} - shape[v + 2]};
+      worst = std::max(worst, tactus::norm(off));
     }
   }
   std::printf("%zu shapes of %zu vertices in %zu bytes, at most %.3f mm off\n", frames, rest.vertices.size(), bytes, 1e3 * worst);

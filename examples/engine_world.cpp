@@ -77,8 +77,7 @@ int main() {
     for (std::size_t i = 0; i < kSlots; ++i)
       if (tactus::is_finite(truth[i].pose.position)) wanted[i] = truth[i];
     for (std::uint32_t i = 0; i < kSlots; ++i) {
-      const tactus::Pose pose = tactus::to_pose(receiver->replica().pose(i, tick), (*scene)->grid.position);
-      const EnginePose shown = pose_to_engine(kUnity, pose);  // to the engine's object of this slot
+      const EnginePose shown = pose_to_engine(kUnity, receiver->pose(i, tick));  // to the engine's object of this slot
       worst = std::max(worst, tactus::norm(pose_from_engine(kUnity, shown).position - wanted[i].pose.position));
     }
   }

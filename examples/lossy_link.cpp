@@ -69,7 +69,7 @@ int main() {
       }
     }
     const int past = tick - kPlayout;
-    const tactus::Pose shown = tactus::to_pose(receiver->replica().pose(0, past), (*scene)->grid.position);
+    const tactus::Pose shown = receiver->pose(0, past);
     const double error = tactus::norm(shown.position - pendulum(past).pose.position);
     if (past >= 0 && error > options.triggers.visual_position) ++over;
   }

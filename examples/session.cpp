@@ -12,9 +12,7 @@
 #include <span>
 #include <vector>
 
-#include <tactus/session/session_client.h>
-#include <tactus/session/session_server.h>
-#include <tactus/tactus.h>
+#include <tactus/session.h>
 
 namespace {
 
@@ -86,8 +84,7 @@ int main() {
       if (event->kind == tactus::ClientEvent::Kind::closed) return 1;
     shown = client->shown_tick(now);
     if (shown < 0) continue;  // nothing has come yet
-    tactus::Receiver& receiver = *client->receiver();
-    const tactus::Pose pose = tactus::to_pose(receiver.replica().pose(0, shown), receiver.scene()->grid.position);
+    const tactus::Pose pose = client->pose(0, shown);
     const double error = tactus::norm(pose.position - pendulum(shown).pose.position);  // against the truth of the tick shown
     worst = std::max(worst, error);
     ++frames;

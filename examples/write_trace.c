@@ -19,13 +19,14 @@ int main(int argc, char** argv) {
   }
   tactus_arrays* arrays = NULL;
   tactus_error error;
+  const char* notes = "";
   if (tactus_arrays_create(time_ns, ROWS, 0, 0, "write_trace", &arrays, &error) != TACTUS_OK ||
       tactus_arrays_object(arrays, "cup", *position, *rotation, NULL, NULL, &error) != TACTUS_OK ||
-      tactus_arrays_user(arrays, "hand", NULL, *force, &error) != TACTUS_OK ||
+      tactus_arrays_user(arrays, "hand", NULL, NULL, *force, &error) != TACTUS_OK ||
       tactus_arrays_contact(arrays, "hand", "cup", 500, TACTUS_CONTACT_SURFACE, 1, &error) != TACTUS_OK ||
-      tactus_arrays_write(arrays, argv[1], &error) != TACTUS_OK)
-    return fprintf(stderr, "%s: %s (%s)\n", argv[1], tactus_error_text(&error), error.rule), 1;
-  printf("%s", tactus_arrays_notes(arrays)); /* missing samples, times off the grid */
+      tactus_arrays_write(arrays, argv[1], &notes, &error) != TACTUS_OK)
+    return fprintf(stderr, "%s: %s (%s)\n", argv[1], error.text, error.rule), 1;
+  printf("%s", notes); /* missing samples, times off the grid */
   tactus_arrays_destroy(arrays);
   return 0;
 }

@@ -69,6 +69,12 @@ class SessionClient {
   std::optional<ClientEvent> poll_event() noexcept;
   std::optional<std::uint64_t> next_timeout() const noexcept;  ///< [us] nothing: never
 
+  /// What receiver() shows at shown_tick(): Receiver::pose() and Receiver::displacements().   pre  shown_tick() was not -1
+  Pose pose(std::uint32_t object, std::int64_t tick) noexcept { return receiver()->pose(object, tick); }
+  std::span<const float> displacements(std::size_t object, std::int64_t tick) noexcept {
+    return receiver()->displacements(object, tick);
+  }
+
   /// Of the newest scene whose declaration is complete; null: there is none yet. It shows ticks of the past: show shown_tick().
   Receiver* receiver() noexcept;
   /// The tick to show; it never falls within an epoch. -1: none yet.

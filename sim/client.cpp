@@ -209,7 +209,7 @@ void Client::show_shape(Receiver& receiver, std::int64_t tick, std::size_t mesh)
 
 void Client::show_poses(Receiver& receiver, std::int64_t tick) noexcept {
   for (std::uint32_t i = 0; i < poses_.size(); ++i) {
-    const Pose pose = to_pose(receiver.replica().pose(i, tick), receiver.scene()->grid.position);
+    const Pose pose = receiver.pose(i, tick);
     if (prediction_) prediction_->hear(i, pose, tick);
     else show_pose(i, pose);
   }

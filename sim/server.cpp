@@ -89,10 +89,10 @@ Result<void> Server::add_codec(const ServerCodec& codec) {
       TACTUS_TRY(auto map, stiffness_map(scene_.deformables[i]));
       coding.deformable.stiffness = std::move(map.stiffness);
     }
+    if (codec.sessions && coding.deformable.profile == DeformableProfile::main && !coding.deformable.layered)
+      coding.deformable.elastic =
+          elastic_physics(scene_.deformables[i], scene_.gravity, deformables_->info()[i].shared, codec.client_model_scale);
     TACTUS_CHECK(add_deformable(builder, deformables_->meshes()[i], coding));
-    if (!codec.sessions || coding.deformable.profile != DeformableProfile::main || coding.deformable.layered) continue;
-    if (auto physics = elastic_physics(scene_.deformables[i], scene_.gravity, deformables_->info()[i].shared, codec.client_model_scale))
-      builder.elastic(std::move(*physics));
   }
   builder.declare_bounds(codec.sender.triggers, codec.sender.deformable.thresholds, codec.sender.load);
   constexpr std::uint8_t kBaselines = 64;

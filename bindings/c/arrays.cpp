@@ -68,11 +68,13 @@ tactus_status tactus_arrays_object(tactus_arrays* arrays, const char* name, cons
   });
 }
 
-tactus_status tactus_arrays_user(tactus_arrays* arrays, const char* name, const double* device, const double* force,
-                                 tactus_error* error) {
+tactus_status tactus_arrays_user(tactus_arrays* arrays, const char* name, const double* device, const double* rotation,
+                                 const double* force, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     if (arrays == nullptr || name == nullptr) return refuse();
-    arrays->arrays.users.push_back({.name = name, .device = rows_of(*arrays, device, 3), .force = rows_of(*arrays, force, 3)});
+    SampledUser user{.name = name, .device = rows_of(*arrays, device, 3), .force = rows_of(*arrays, force, 3)};
+    user.rotation = rows_of(*arrays, rotation, 4);
+    arrays->arrays.users.push_back(std::move(user));
     return TACTUS_OK;
   });
 }
@@ -91,27 +93,15 @@ tactus_status tactus_arrays_contact(tactus_arrays* arrays, const char* user, con
   });
 }
 
-tactus_status tactus_arrays_write(tactus_arrays* arrays, const char* path, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
+tactus_status tactus_arrays_write(tactus_arrays* arrays, const char* path, const char** notes, tactus_error* error) {
+  return call_with_words(error, [&]() -> Outcome {
     if (arrays == nullptr || path == nullptr) return refuse();
-    ReadNotes notes;
-    error_words().clear();
-    const auto written = write_arrays(arrays->arrays, path, notes);
-    arrays->notes = text_of(notes);
+    ReadNotes taken;
+    const auto written = write_arrays(arrays->arrays, path, taken);
+    arrays->notes = text_of(taken);
+    if (notes != nullptr) *notes = arrays->notes.c_str();
     if (written) return TACTUS_OK;
-    error_words() = text_of(notes.all().empty() ? ReadNote{} : notes.all().back());
+    if (!taken.all().empty()) error_words() = text_of(taken.all().back());
     return tl::make_unexpected(written.error());
   });
 }
-
-tactus_status tactus_arrays_device_rotation(tactus_arrays* arrays, const char* user, const double* rotation,
-                                            tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    if (arrays == nullptr || user == nullptr || rotation == nullptr) return refuse();
-    for (SampledUser& of : arrays->arrays.users)
-      if (of.name == user) return of.rotation = rows_of(*arrays, rotation, 4), TACTUS_OK;
-    return fail(Errc::invalid_argument, "R-API-5");
-  });
-}
-
-const char* tactus_arrays_notes(const tactus_arrays* arrays) { return arrays == nullptr ? "" : arrays->notes.c_str(); }

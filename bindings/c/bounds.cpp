@@ -70,16 +70,3 @@ Result<LoadThresholds> bounds_of(const tactus_load_bounds* bounds) noexcept {
 }
 
 }  // namespace tactus::c
-
-using namespace tactus;
-using namespace tactus::c;
-
-tactus_status tactus_rigid_bounds_init(tactus_rigid_bounds* bounds, size_t size) {
-  return init(bounds, size, bounds_of(RigidTriggers{}));
-}
-tactus_status tactus_deformable_bounds_init(tactus_deformable_bounds* bounds, size_t size) {
-  return init(bounds, size, bounds_of(DeformableBounds{}));
-}
-tactus_status tactus_load_bounds_init(tactus_load_bounds* bounds, size_t size) {
-  return init(bounds, size, bounds_of(LoadThresholds{}));
-}

@@ -14,26 +14,7 @@ static_assert(TACTUS_ADVICE_NONE == static_cast<int>(Advice::none) && TACTUS_ADV
               TACTUS_ADVICE_REQUEST_KEY == static_cast<int>(Advice::request_key) &&
               TACTUS_ADVICE_CLOSE == static_cast<int>(Advice::close));
 
-Error error_of(const tactus_error* error) noexcept {
-  if (error == nullptr || error->rule == nullptr) return {Errc::internal, "", 0};
-  return {static_cast<Errc>(error->status), error->rule, error->bit_offset};
-}
-
-}  // namespace
-
-tactus_status report(const Error& error, tactus_error* out) noexcept {
-  const auto status = static_cast<tactus_status>(error.code);
-  if (out != nullptr) *out = {status, error.rule, error.bit_offset};
-  return status;
-}
-
-}  // namespace tactus::c
-
-using namespace tactus;
-
-uint32_t tactus_version(void) { return TACTUS_VERSION; }
-
-const char* tactus_status_name(tactus_status status) {
+const char* name_of(tactus_status status) noexcept {
   switch (status) {
     case TACTUS_OK:
       return "ok";
@@ -48,6 +29,34 @@ const char* tactus_status_name(tactus_status status) {
   return is_class ? errc_name(static_cast<Errc>(status)) : "unknown";
 }
 
-const char* tactus_error_text(const tactus_error* error) { return describe(c::error_of(error)); }
-const char* tactus_error_remedy(const tactus_error* error) { return remedy(c::error_of(error)); }
-int32_t tactus_error_advice(const tactus_error* error) { return static_cast<int32_t>(advice(c::error_of(error))); }
+}  // namespace
+
+tactus_status report(tactus_status status, const Error& error, tactus_error* out) noexcept {
+  if (out == nullptr) return status;
+  *out = {.status = status,
+          .advice = static_cast<std::int32_t>(advice(error)),
+          .bit_offset = error.bit_offset,
+          .name = name_of(status),
+          .rule = error.rule,
+          .text = describe(error),
+          .remedy = remedy(error),
+          .object = "",
+          .detail = ""};
+  return status;
+}
+
+tactus_status report(const Error& error, tactus_error* out) noexcept {
+  return report(static_cast<tactus_status>(error.code), error, out);
+}
+
+}  // namespace tactus::c
+
+using namespace tactus;
+
+uint32_t tactus_version(void) { return TACTUS_VERSION; }
+
+tactus_status tactus_describe(tactus_status status, const char* rule, tactus_error* error) {
+  if (error == nullptr) return TACTUS_INVALID_ARGUMENT;
+  c::report(status, {static_cast<Errc>(status), rule != nullptr ? rule : "", 0}, error);
+  return TACTUS_OK;
+}

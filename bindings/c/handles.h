@@ -40,6 +40,32 @@ inline constexpr std::int64_t kLastTick = std::int64_t{1} << 40;    ///< ticks o
 inline constexpr std::uint64_t kLastTime = std::uint64_t{1} << 60;  ///< [us]
 
 tactus_status report(const Error& error, tactus_error* out) noexcept;
+/// The same where the status is none of the library's classes.
+tactus_status report(tactus_status status, const Error& error, tactus_error* out) noexcept;
+
+/// What tactus_init() fills in.
+template <class T>
+T defaults() noexcept;
+template <>
+tactus_limits defaults<tactus_limits>() noexcept;
+template <>
+tactus_receiver_options defaults<tactus_receiver_options>() noexcept;
+template <>
+tactus_scene_options defaults<tactus_scene_options>() noexcept;
+template <>
+tactus_rigid_options defaults<tactus_rigid_options>() noexcept;
+template <>
+tactus_deformable_options defaults<tactus_deformable_options>() noexcept;
+template <>
+tactus_driven_physics defaults<tactus_driven_physics>() noexcept;
+template <>
+tactus_elastic_physics defaults<tactus_elastic_physics>() noexcept;
+template <>
+tactus_sender_options defaults<tactus_sender_options>() noexcept;
+template <>
+tactus_server_options defaults<tactus_server_options>() noexcept;
+template <>
+tactus_client_options defaults<tactus_client_options>() noexcept;
 
 /// Outcome of a function that succeeded: TACTUS_OK, TACTUS_NOTHING or TACTUS_BUFFER_TOO_SMALL.
 using Outcome = Result<tactus_status>;
@@ -49,7 +75,7 @@ template <class Body>
 tactus_status call(tactus_error* error, Body&& body) noexcept try {
   const Outcome outcome = std::forward<Body>(body)();
   if (!outcome) return report(outcome.error(), error);
-  if (*outcome == TACTUS_BUFFER_TOO_SMALL && error != nullptr) *error = {*outcome, RuleName("R-API-13"), 0};
+  if (*outcome == TACTUS_BUFFER_TOO_SMALL) return report(*outcome, {Errc::invalid_argument, RuleName("R-API-13"), 0}, error);
   return *outcome;
 } catch (const std::bad_alloc&) {
   return report(out_of_memory().value(), error);

@@ -48,16 +48,15 @@ tactus_status tactus_player_play(tactus_player* player, int64_t tick, tactus_pac
   });
 }
 
-tactus_status tactus_player_next_tick(tactus_player* player, int64_t* tick, tactus_error* error) {
+tactus_status tactus_player_get(tactus_player* player, tactus_player_info* info, tactus_error* error) {
   return call(error, [&]() -> Outcome {
-    if (player == nullptr || tick == nullptr) return refuse();
+    if (player == nullptr) return refuse();
+    TACTUS_CHECK(check_answer(info));
     TACTUS_TRY(const auto next, player->player.next_tick());
-    if (!next) return TACTUS_NOTHING;
-    *tick = *next;
+    answer(info, {.size = 0,
+                  .complete = player->player.complete(),
+                  .next_tick = next.value_or(INT64_MAX),
+                  .header_bytes = player->player.header_bytes()});
     return TACTUS_OK;
   });
 }
-
-uint64_t tactus_player_header_bytes(const tactus_player* player) { return player != nullptr ? player->player.header_bytes() : 0; }
-
-int32_t tactus_player_complete(const tactus_player* player) { return player != nullptr && player->player.complete() ? 1 : 0; }

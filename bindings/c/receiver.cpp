@@ -38,6 +38,11 @@ Result<Receiver*> receiver_of(const tactus_receiver* receiver) noexcept {
 
 }  // namespace
 
+template <>
+tactus_receiver_options defaults<tactus_receiver_options>() noexcept {
+  return kOptions;
+}
+
 Result<ReceiverOptions> options_of(const tactus_receiver_options* options) noexcept {
   TACTUS_TRY(const tactus_receiver_options o, given_or(options, kOptions));
   TACTUS_TRY(const DecodeLimits limits, limits_of(o.limits));
@@ -72,10 +77,6 @@ tactus_packet_info info_of(const Scene& scene, const DecodedPacket& packet) noex
 
 using namespace tactus;
 using namespace tactus::c;
-
-tactus_status tactus_receiver_options_init(tactus_receiver_options* options, size_t size) {
-  return init(options, size, kOptions);
-}
 
 tactus_status tactus_receiver_create(const tactus_scene* scene, const tactus_receiver_options* options,
                                      tactus_receiver** receiver, tactus_error* error) {
@@ -135,28 +136,18 @@ tactus_status tactus_receiver_updates(const tactus_receiver* receiver, tactus_up
   });
 }
 
-tactus_status tactus_receiver_poses(const tactus_receiver* receiver, int64_t tick, uint32_t first, size_t count, tactus_pose* out,
-                                    tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_TRY(Receiver * of, receiver_of(receiver));
-    TACTUS_CHECK(check_tick(tick));
-    const Scene& scene = *of->scene();
-    const std::size_t there = scene.objects.size();
-    if (first > there || count > there - first || (out == nullptr && count > 0)) return refuse();
-    for (std::size_t i = 0; i < count; ++i)
-      out[i] = pose_of(to_pose(of->replica().pose(first + static_cast<std::uint32_t>(i), tick), scene.grid.position));
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_receiver_levels(const tactus_receiver* receiver, int64_t tick, uint32_t first, size_t count, uint8_t* out,
-                                     tactus_error* error) {
+tactus_status tactus_receiver_poses(const tactus_receiver* receiver, int64_t tick, uint32_t first, size_t count,
+                                    tactus_pose* poses, uint8_t* levels, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     TACTUS_TRY(Receiver * of, receiver_of(receiver));
     TACTUS_CHECK(check_tick(tick));
     const std::size_t there = of->scene()->objects.size();
-    if (first > there || count > there - first || (out == nullptr && count > 0)) return refuse();
-    for (std::size_t i = 0; i < count; ++i) out[i] = of->replica().lod(first + static_cast<std::uint32_t>(i), tick);
+    if (first > there || count > there - first) return refuse();
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto object = first + static_cast<std::uint32_t>(i);
+      if (poses != nullptr) poses[i] = pose_of(of->pose(object, tick));
+      if (levels != nullptr) levels[i] = of->replica().lod(object, tick);
+    }
     return TACTUS_OK;
   });
 }
@@ -192,22 +183,14 @@ tactus_status tactus_receiver_loads(const tactus_receiver* receiver, uint32_t ob
   });
 }
 
-tactus_status tactus_receiver_state_hash(const tactus_receiver* receiver, uint32_t substream, uint64_t* hash,
-                                         tactus_error* error) {
+tactus_status tactus_receiver_hash(const tactus_receiver* receiver, uint32_t substream, uint64_t* state, int64_t tick,
+                                   uint64_t* poses, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     TACTUS_TRY(Receiver * of, receiver_of(receiver));
-    if (hash == nullptr || substream >= substreams_of(*of->scene())) return refuse();
-    *hash = of->state_hash(substream);
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_receiver_pose_hash(const tactus_receiver* receiver, int64_t tick, uint64_t* hash, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_TRY(Receiver * of, receiver_of(receiver));
-    TACTUS_CHECK(check_tick(tick));
-    if (hash == nullptr) return refuse();
-    *hash = of->replica().pose_hash(tick);
+    if (state != nullptr && substream >= substreams_of(*of->scene())) return refuse();
+    if (poses != nullptr) TACTUS_CHECK(check_tick(tick));
+    if (state != nullptr) *state = of->state_hash(substream);
+    if (poses != nullptr) *poses = of->replica().pose_hash(tick);
     return TACTUS_OK;
   });
 }

@@ -60,6 +60,11 @@ tactus_scene_info info_of(const Scene& scene) noexcept {
 
 }  // namespace
 
+template <>
+tactus_limits defaults<tactus_limits>() noexcept {
+  return kLimits;
+}
+
 Result<DecodeLimits> limits_of(const tactus_limits* limits) noexcept {
   TACTUS_TRY(const tactus_limits l, given_or(limits, kLimits));
   return DecodeLimits{.objects = l.objects,
@@ -80,8 +85,6 @@ std::uint32_t kind_of(const Scene& scene, std::size_t substream) noexcept {
 
 using namespace tactus;
 using namespace tactus::c;
-
-tactus_status tactus_limits_init(tactus_limits* limits, size_t size) { return init(limits, size, kLimits); }
 
 tactus_status tactus_scene_parse(const uint8_t* bytes, size_t size, const tactus_limits* limits, tactus_scene** scene,
                                  size_t* used, tactus_error* error) {
@@ -144,88 +147,48 @@ tactus_status tactus_scene_get_deformable(const tactus_scene* scene, uint32_t ob
                   .rings = of->rings,
                   .clusters = of->cluster_basis.count,
                   .blend = of->cluster_basis.blend,
-                  .reserved = 0});
+                  .has_stiffness = !of->stiffness.empty()});
     return TACTUS_OK;
   });
 }
 
-tactus_status tactus_scene_get_rest(const tactus_scene* scene, uint32_t object, float* out, size_t capacity,
+tactus_status tactus_scene_get_mesh(const tactus_scene* scene, uint32_t object, const tactus_mesh_arrays* arrays,
                                     tactus_error* error) {
   return call(error, [&]() -> Outcome {
     TACTUS_TRY(const DeformableObject* of, deformable_of(scene, object));
-    if (out == nullptr) return refuse();
-    if (capacity < 3 * of->rest.size()) return TACTUS_BUFFER_TOO_SMALL;
-    metres_of(of->rest, scene->shared->grid.position, out);
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_scene_get_triangles(const tactus_scene* scene, uint32_t object, uint32_t* out, size_t capacity,
-                                         tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_TRY(const DeformableObject* of, deformable_of(scene, object));
-    if (of->triangles.empty()) return TACTUS_OK;
-    if (out == nullptr) return refuse();
-    if (capacity < 3 * of->triangles.size()) return TACTUS_BUFFER_TOO_SMALL;
-    for (const Triangle& triangle : of->triangles)
-      for (const std::uint32_t corner : triangle) *out++ = corner;
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_scene_get_stiffness(const tactus_scene* scene, uint32_t object, double* out, size_t capacity,
-                                         tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_TRY(const DeformableObject* of, deformable_of(scene, object));
-    if (out == nullptr) return refuse();
-    if (of->stiffness.empty()) return TACTUS_NOTHING;
-    if (capacity < of->stiffness.size()) return TACTUS_BUFFER_TOO_SMALL;
-    for (const std::uint8_t level : of->stiffness)
-      *out++ = level == 0 ? std::numeric_limits<double>::infinity() : stiffness_of_level(level);
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_scene_get_clusters(const tactus_scene* scene, uint32_t object, uint8_t* out, size_t capacity,
-                                        tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_TRY(const DeformableObject* of, deformable_of(scene, object));
-    if (out == nullptr) return refuse();
+    if (arrays == nullptr) return refuse();
+    TACTUS_TRY(const tactus_mesh_arrays to, given_or(arrays, tactus_mesh_arrays{}));
     const std::vector<std::uint8_t>& clusters = of->cluster_basis.clusters;
-    if (clusters.empty()) return TACTUS_NOTHING;
-    if (capacity < clusters.size()) return TACTUS_BUFFER_TOO_SMALL;
-    std::ranges::copy(clusters, out);
+    if ((to.stiffness != nullptr && of->stiffness.empty()) || (to.clusters != nullptr && clusters.empty())) return TACTUS_NOTHING;
+    const bool wants_vertices = to.rest != nullptr || to.stiffness != nullptr || to.clusters != nullptr;
+    if ((wants_vertices && to.vertices < of->rest.size()) || (to.corners != nullptr && to.triangles < of->triangles.size()))
+      return TACTUS_BUFFER_TOO_SMALL;
+    if (to.rest != nullptr) metres_of(of->rest, scene->shared->grid.position, to.rest);
+    if (std::uint32_t* out = to.corners; out != nullptr)
+      for (const Triangle& triangle : of->triangles) out = std::ranges::copy(triangle, out).out;
+    if (double* out = to.stiffness; out != nullptr)
+      for (const std::uint8_t level : of->stiffness)
+        *out++ = level == 0 ? std::numeric_limits<double>::infinity() : stiffness_of_level(level);
+    if (to.clusters != nullptr) std::ranges::copy(clusters, to.clusters);
     return TACTUS_OK;
   });
 }
 
-tactus_status tactus_scene_get_rigid_bounds(const tactus_scene* scene, tactus_rigid_bounds* bounds, tactus_error* error) {
+tactus_status tactus_scene_get_bounds(const tactus_scene* scene, tactus_rigid_bounds* rigid, uint32_t object,
+                                      tactus_deformable_bounds* deformable, tactus_load_bounds* load, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     TACTUS_TRY(const Scene* of, scene_of(scene));
-    TACTUS_CHECK(check_answer(bounds));
-    if (!of->bounds || !of->bounds->rigid) return TACTUS_NOTHING;
-    answer(bounds, bounds_of(*of->bounds->rigid));
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_scene_get_deformable_bounds(const tactus_scene* scene, uint32_t object, tactus_deformable_bounds* bounds,
-                                                 tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_CHECK(deformable_of(scene, object));
-    TACTUS_CHECK(check_answer(bounds));
-    if (!scene->shared->bounds) return TACTUS_NOTHING;
-    answer(bounds, bounds_of(scene->shared->bounds->deformables[object]));
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_scene_get_load_bounds(const tactus_scene* scene, tactus_load_bounds* bounds, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_TRY(const Scene* of, scene_of(scene));
-    TACTUS_CHECK(check_answer(bounds));
-    if (!of->bounds || !of->bounds->loads) return TACTUS_NOTHING;
-    answer(bounds, bounds_of(*of->bounds->loads));
+    if (rigid != nullptr) TACTUS_CHECK(check_answer(rigid));
+    if (deformable != nullptr) {
+      TACTUS_CHECK(deformable_of(scene, object));
+      TACTUS_CHECK(check_answer(deformable));
+    }
+    if (load != nullptr) TACTUS_CHECK(check_answer(load));
+    const auto& bounds = of->bounds;
+    if (!bounds || (rigid != nullptr && !bounds->rigid) || (load != nullptr && !bounds->loads)) return TACTUS_NOTHING;
+    if (rigid != nullptr) answer(rigid, bounds_of(*bounds->rigid));
+    if (deformable != nullptr) answer(deformable, bounds_of(bounds->deformables[object]));
+    if (load != nullptr) answer(load, bounds_of(*bounds->loads));
     return TACTUS_OK;
   });
 }

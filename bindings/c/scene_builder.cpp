@@ -28,6 +28,9 @@ static_assert(TACTUS_PROFILE_THESIS == static_cast<int>(RigidProfile::thesis) &&
               TACTUS_PROFILE_THESIS == static_cast<int>(DeformableProfile::thesis) &&
               TACTUS_PROFILE_MAIN == static_cast<int>(DeformableProfile::main));
 
+constexpr tactus_rigid_options kRigidOptions{
+    .size = sizeof(tactus_rigid_options), .dof = TACTUS_DOF_ALL, .initial = {{0, 0, 0}, {1, 0, 0, 0}}, .driven = nullptr};
+
 constexpr tactus_scene_options kSceneOptions{.size = sizeof(tactus_scene_options),
                                              .tick_rate = 1000,
                                              .position_exp = GridExponents{}.position,
@@ -71,7 +74,8 @@ tactus_deformable_options deformable_options() noexcept {
           .stiffness_count = 0,
           .clusters = nullptr,
           .cluster_count = 0,
-          .blend = 0};
+          .blend = 0,
+          .elastic = nullptr};
 }
 
 constexpr tactus_driven_physics kDrivenPhysics{.size = sizeof(tactus_driven_physics),
@@ -206,16 +210,32 @@ Result<ElasticPhysics> physics_of(const tactus_elastic_physics& p) {
 }
 
 }  // namespace
+
+template <>
+tactus_scene_options defaults<tactus_scene_options>() noexcept {
+  return kSceneOptions;
+}
+template <>
+tactus_rigid_options defaults<tactus_rigid_options>() noexcept {
+  return kRigidOptions;
+}
+template <>
+tactus_deformable_options defaults<tactus_deformable_options>() noexcept {
+  return deformable_options();
+}
+template <>
+tactus_driven_physics defaults<tactus_driven_physics>() noexcept {
+  return kDrivenPhysics;
+}
+template <>
+tactus_elastic_physics defaults<tactus_elastic_physics>() noexcept {
+  return kElasticPhysics;
+}
+
 }  // namespace tactus::c
 
 using namespace tactus;
 using namespace tactus::c;
-
-tactus_status tactus_scene_options_init(tactus_scene_options* options, size_t size) { return init(options, size, kSceneOptions); }
-
-tactus_status tactus_deformable_options_init(tactus_deformable_options* options, size_t size) {
-  return init(options, size, deformable_options());
-}
 
 tactus_status tactus_scene_builder_create(const tactus_scene_options* options, tactus_scene_builder** builder,
                                           tactus_error* error) {
@@ -236,11 +256,23 @@ tactus_status tactus_scene_builder_create(const tactus_scene_options* options, t
 
 void tactus_scene_builder_destroy(tactus_scene_builder* builder) { delete builder; }
 
-tactus_status tactus_scene_builder_rigid(tactus_scene_builder* builder, const char* name, const tactus_pose* initial,
-                                         uint32_t dof, tactus_error* error) {
+tactus_status tactus_scene_builder_rigid(tactus_scene_builder* builder, const char* name, const tactus_rigid_options* options,
+                                         tactus_error* error) {
   return call(error, [&]() -> Outcome {
-    if (builder == nullptr || name == nullptr || dof > Dof::all) return refuse();
-    builder->builder.rigid(name, initial != nullptr ? pose_of(*initial) : Pose{}, static_cast<std::uint8_t>(dof));
+    if (builder == nullptr || name == nullptr) return refuse();
+    TACTUS_TRY(const tactus_rigid_options o, given_or(options, kRigidOptions));
+    if (o.dof > Dof::all) return fail(Errc::invalid_argument, "R-API-4");
+    RigidOptions chosen{.dof = static_cast<std::uint8_t>(o.dof)};
+    if (o.driven != nullptr) {
+      TACTUS_TRY(const tactus_driven_physics p, given_or(o.driven, kDrivenPhysics));
+      chosen.driven = DrivenPhysics{.mass = p.mass,
+                                    .inertia = vec_of(p.inertia),
+                                    .stiffness = p.stiffness,
+                                    .hold = p.hold,
+                                    .friction = p.friction,
+                                    .damping = p.damping};
+    }
+    builder->builder.rigid(name, pose_of(o.initial), chosen);
     return TACTUS_OK;
   });
 }
@@ -253,41 +285,11 @@ tactus_status tactus_scene_builder_deformable(tactus_scene_builder* builder, con
     TACTUS_TRY(TriMesh mesh, mesh_of(vertices, vertex_count, triangles, triangle_count));
     TACTUS_TRY(const tactus_deformable_options o, given_or(options, deformable_options()));
     TACTUS_TRY(DeformableCoding coding, coding_of(o, vertex_count));
+    if (o.elastic != nullptr) {
+      TACTUS_TRY(const tactus_elastic_physics p, given_or(o.elastic, kElasticPhysics));
+      TACTUS_TRY(coding.elastic, physics_of(p));
+    }
     builder->builder.deformable(name, std::move(mesh), std::move(coding));
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_driven_physics_init(tactus_driven_physics* physics, size_t size) {
-  return init(physics, size, kDrivenPhysics);
-}
-
-tactus_status tactus_elastic_physics_init(tactus_elastic_physics* physics, size_t size) {
-  return init(physics, size, kElasticPhysics);
-}
-
-tactus_status tactus_scene_builder_driven(tactus_scene_builder* builder, const tactus_driven_physics* physics,
-                                          tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    if (builder == nullptr || physics == nullptr) return refuse();
-    TACTUS_TRY(const tactus_driven_physics p, given_or(physics, kDrivenPhysics));
-    builder->builder.driven({.mass = p.mass,
-                             .inertia = vec_of(p.inertia),
-                             .stiffness = p.stiffness,
-                             .hold = p.hold,
-                             .friction = p.friction,
-                             .damping = p.damping});
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_scene_builder_elastic(tactus_scene_builder* builder, const tactus_elastic_physics* physics,
-                                           tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    if (builder == nullptr || physics == nullptr) return refuse();
-    TACTUS_TRY(const tactus_elastic_physics p, given_or(physics, kElasticPhysics));
-    TACTUS_TRY(ElasticPhysics body, physics_of(p));
-    builder->builder.elastic(std::move(body));
     return TACTUS_OK;
   });
 }
@@ -328,7 +330,7 @@ tactus_status tactus_scene_builder_declare_bounds(tactus_scene_builder* builder,
 }
 
 tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_scene** scene, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
+  const tactus_status status = call(error, [&]() -> Outcome {
     if (builder == nullptr || scene == nullptr) return refuse();
     auto built = builder->builder.build(builder->limits);
     builder->culprit.clear();
@@ -341,12 +343,9 @@ tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_s
     *scene = new tactus_scene{*std::move(built)};
     return TACTUS_OK;
   });
-}
-
-const char* tactus_scene_builder_culprit(const tactus_scene_builder* builder) {
-  return builder != nullptr ? builder->culprit.c_str() : "";
-}
-
-const char* tactus_scene_builder_detail(const tactus_scene_builder* builder) {
-  return builder != nullptr ? builder->detail.c_str() : "";
+  if (status != TACTUS_OK && builder != nullptr && error != nullptr) {
+    error->object = builder->culprit.c_str();
+    error->detail = builder->detail.c_str();
+  }
+  return status;
 }

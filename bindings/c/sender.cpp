@@ -13,8 +13,7 @@
 struct tactus_sender {
   tactus::Sender sender;
   tactus::c::TruthBuffer truth;
-  std::int64_t tick = 0;
-  std::span<const tactus::Packet> packets{};  // of this tick
+  tactus::c::Answer answer;  // of this tick
 };
 
 namespace tactus::c {
@@ -38,23 +37,12 @@ constexpr tactus_sender_options kOptions{.size = sizeof(tactus_sender_options),
 
 std::optional<double> fraction_of(double fraction) noexcept { return fraction == 0 ? std::nullopt : std::optional(fraction); }
 
-tactus_packet_info info_of(const Scene& scene, const Packet& packet, std::int64_t tick) noexcept {
-  return {.size = 0,
-          .bytes = static_cast<std::uint32_t>(packet.bytes.size()),
-          .tick = tick,
-          .number = packet.number,
-          .offset = 0,
-          .substream = static_cast<std::uint32_t>(packet.substream),
-          .kind = kind_of(scene, packet.substream),
-          .sequence = packet.sequence,
-          .key = packet.key,
-          .layer = static_cast<std::uint32_t>(packet.layer),
-          .reason = static_cast<std::uint32_t>(packet.reason),
-          .updates = packet.updates,
-          .restarts = 0};
-}
-
 }  // namespace
+
+template <>
+tactus_sender_options defaults<tactus_sender_options>() noexcept {
+  return kOptions;
+}
 
 Result<SenderOptions> options_of(const tactus_sender_options* options) noexcept {
   TACTUS_TRY(const tactus_sender_options o, given_or(options, kOptions));
@@ -79,53 +67,30 @@ Result<SenderOptions> options_of(const tactus_sender_options* options) noexcept 
 using namespace tactus;
 using namespace tactus::c;
 
-tactus_status tactus_sender_options_init(tactus_sender_options* options, size_t size) { return init(options, size, kOptions); }
-
-tactus_status tactus_truth_init(tactus_truth* truth, size_t size) { return init(truth, size, tactus_truth{}); }
-
 tactus_status tactus_sender_create(const tactus_scene* scene, const tactus_sender_options* options, tactus_sender** sender,
                                    tactus_error* error) {
   return call(error, [&]() -> Outcome {
     if (scene == nullptr || !scene->shared || sender == nullptr) return refuse();
     TACTUS_TRY(const SenderOptions chosen, options_of(options));
     TACTUS_TRY(Sender made, Sender::create(scene->shared, chosen));
-    *sender = new tactus_sender{std::move(made), TruthBuffer(*scene->shared)};
+    *sender = new tactus_sender{std::move(made), TruthBuffer(*scene->shared), Answer(*scene->shared)};
     return TACTUS_OK;
   });
 }
 
 void tactus_sender_destroy(tactus_sender* sender) { delete sender; }
 
-tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const tactus_truth* truth, size_t* packets,
+tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const tactus_truth* truth, tactus_encoded* encoded,
                                    tactus_error* error) {
   return call(error, [&]() -> Outcome {
-    if (sender == nullptr || packets == nullptr) return refuse();
-    sender->packets = {};
-    TACTUS_TRY(const Truth taken, sender->truth.of(truth));
-    TACTUS_TRY(sender->packets, sender->sender.encode(tick, taken));
-    sender->tick = tick;
-    *packets = sender->packets.size();
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_sender_held(const tactus_sender* sender, tactus_held* out, size_t capacity, size_t* count,
-                                 tactus_error* error) {
-  return call(error, [&]() -> Outcome {
     if (sender == nullptr) return refuse();
-    return copy_held(*sender->sender.scene(), sender->sender.held(), out, capacity, count);
-  });
-}
-
-tactus_status tactus_sender_packet(const tactus_sender* sender, size_t index, tactus_packet_info* info, uint8_t* bytes,
-                                   size_t capacity, size_t* size, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    if (sender == nullptr || index >= sender->packets.size()) return refuse();
-    const Packet& packet = sender->packets[index];
-    if (info != nullptr) TACTUS_CHECK(check_answer(info));
-    TACTUS_TRY(const tactus_status copied, copy_out(packet.bytes, bytes, capacity, size));
-    if (info != nullptr) answer(info, info_of(*sender->sender.scene(), packet, sender->tick));
-    return copied;
+    TACTUS_CHECK(check_answer(encoded));
+    sender->answer.clear();
+    TACTUS_TRY(const Truth taken, sender->truth.of(truth));
+    TACTUS_TRY(const auto packets, sender->sender.encode(tick, taken));
+    sender->answer.take(*sender->sender.scene(), tick, packets, sender->sender.held());
+    answer(encoded, sender->answer.told());
+    return TACTUS_OK;
   });
 }
 
@@ -161,14 +126,6 @@ tactus_status tactus_sender_set_viewpoints(tactus_sender* sender, const double* 
     const std::size_t used = std::min(count, out.size());
     for (std::size_t i = 0; i < used; ++i) out[i] = {viewpoints[3 * i], viewpoints[3 * i + 1], viewpoints[3 * i + 2]};
     sender->sender.set_viewpoints(std::span(out).first(used));
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_sender_state_hash(const tactus_sender* sender, uint32_t substream, uint64_t* hash, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    if (sender == nullptr || hash == nullptr || substream >= substreams_of(*sender->sender.scene())) return refuse();
-    *hash = sender->sender.state_hash(substream);
     return TACTUS_OK;
   });
 }

@@ -113,14 +113,16 @@ std::uint32_t kind_of(ClientEvent::Kind kind) noexcept {
 }
 
 }  // namespace
+
+template <>
+tactus_client_options defaults<tactus_client_options>() noexcept {
+  return client_options();
+}
+
 }  // namespace tactus::c
 
 using namespace tactus;
 using namespace tactus::c;
-
-tactus_status tactus_client_options_init(tactus_client_options* options, size_t size) {
-  return init(options, size, client_options());
-}
 
 tactus_status tactus_client_create(const tactus_client_options* options, tactus_client** client, tactus_error* error) {
   return call(error, [&]() -> Outcome {
@@ -235,19 +237,12 @@ tactus_status tactus_client_shown_tick(tactus_client* client, uint64_t now, int6
   });
 }
 
-tactus_status tactus_client_force_fraction(tactus_client* client, uint64_t now, double* fraction, tactus_error* error) {
+tactus_status tactus_client_status(tactus_client* client, uint64_t now, tactus_session_status* status, tactus_error* error) {
   return call_at(client, now, error, [&](SessionClient& session) -> Outcome {
-    if (fraction == nullptr) return refuse();
-    *fraction = session.force_fraction(now);
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_client_status(const tactus_client* client, tactus_session_status* status, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    if (client == nullptr) return refuse();
     TACTUS_CHECK(check_answer(status));
-    answer(status, status_of(client->client.status()));
+    tactus_session_status told = status_of(session.status());
+    told.force_share = session.force_share(now);
+    answer(status, told);
     return TACTUS_OK;
   });
 }

@@ -9,6 +9,7 @@
 struct tactus_server {
   tactus::SessionServer server;
   tactus::c::TruthBuffer truth;
+  tactus::c::Answer answer;
   tactus::SharedScene scene;
   tactus::c::Clock clock{};
 };
@@ -101,14 +102,16 @@ tactus_device_sample sample_of(const DeviceSample& sample) noexcept {
 }
 
 }  // namespace
+
+template <>
+tactus_server_options defaults<tactus_server_options>() noexcept {
+  return server_options();
+}
+
 }  // namespace tactus::c
 
 using namespace tactus;
 using namespace tactus::c;
-
-tactus_status tactus_server_options_init(tactus_server_options* options, size_t size) {
-  return init(options, size, server_options());
-}
 
 tactus_status tactus_server_create(const tactus_scene* scene, const tactus_server_options* options, uint64_t entropy,
                                    uint64_t now, tactus_server** server, tactus_error* error) {
@@ -116,7 +119,8 @@ tactus_status tactus_server_create(const tactus_scene* scene, const tactus_serve
     if (scene == nullptr || !scene->shared || server == nullptr || now > kLastTime) return refuse();
     TACTUS_TRY(const SessionServerOptions chosen, session_options(options));
     TACTUS_TRY(SessionServer made, SessionServer::create(scene->shared, chosen, entropy, now));
-    auto out = std::make_unique<tactus_server>(tactus_server{std::move(made), TruthBuffer(*scene->shared), scene->shared});
+    auto out = std::make_unique<tactus_server>(
+        tactus_server{std::move(made), TruthBuffer(*scene->shared), Answer(*scene->shared), scene->shared});
     TACTUS_CHECK(out->clock.advance(now));
     *server = out.release();
     return TACTUS_OK;
@@ -145,21 +149,17 @@ tactus_status tactus_server_handle_timeout(tactus_server* server, uint64_t now, 
 }
 
 tactus_status tactus_server_submit(tactus_server* server, uint64_t now, int64_t tick, const tactus_truth* truth,
-                                   tactus_error* error) {
+                                   tactus_encoded* encoded, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     if (server == nullptr) return refuse();
+    if (encoded != nullptr) TACTUS_CHECK(check_answer(encoded));
     TACTUS_TRY(const Truth taken, server->truth.of(truth));
     TACTUS_TRY(SessionServer * to, at(server, now));
     TACTUS_CHECK(to->submit(now, tick, taken));
+    if (encoded == nullptr) return TACTUS_OK;
+    server->answer.take(*server->scene, tick, {}, to->held());
+    answer(encoded, server->answer.told());
     return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_server_held(const tactus_server* server, tactus_held* out, size_t capacity, size_t* count,
-                                 tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    if (server == nullptr) return refuse();
-    return copy_held(*server->scene, server->server.held(), out, capacity, count);
   });
 }
 
@@ -168,8 +168,10 @@ tactus_status tactus_server_replace_scene(tactus_server* server, const tactus_sc
     if (scene == nullptr || !scene->shared) return refuse();
     TACTUS_TRY(SessionServer * to, at(server, now));
     TruthBuffer truth(*scene->shared);
+    Answer answer(*scene->shared);
     TACTUS_CHECK(to->replace_scene(scene->shared, now));
     server->truth = std::move(truth);
+    server->answer = std::move(answer);
     server->scene = scene->shared;
     return TACTUS_OK;
   });
@@ -184,19 +186,15 @@ tactus_status tactus_server_seat(tactus_server* server, uint32_t client, uint32_
   });
 }
 
-tactus_status tactus_server_close_client(tactus_server* server, uint32_t client, uint32_t reason, tactus_error* error) {
+tactus_status tactus_server_close(tactus_server* server, uint32_t client, uint32_t reason, tactus_error* error) {
   return call(error, [&]() -> Outcome {
+    if (server == nullptr || !is_reason(reason)) return refuse();
+    if (client == TACTUS_EVERY_CLIENT) {
+      server->server.close();
+      return TACTUS_OK;
+    }
     TACTUS_TRY(const std::uint16_t which, client_of(server, client));
-    if (!is_reason(reason)) return refuse();
     server->server.close(which, static_cast<LeaveReason>(reason));
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_server_close(tactus_server* server, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    if (server == nullptr) return refuse();
-    server->server.close();
     return TACTUS_OK;
   });
 }
@@ -239,25 +237,18 @@ tactus_status tactus_server_next_timeout(const tactus_server* server, uint64_t* 
   });
 }
 
-tactus_status tactus_server_device(tactus_server* server, uint32_t client, uint64_t now, tactus_device_sample* sample,
-                                   tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_TRY(const std::uint16_t which, client_of(server, client));
-    if (sample == nullptr) return refuse();
-    TACTUS_TRY(SessionServer * of, at(server, now));
-    const auto device = of->device(which, now);
-    if (!device) return TACTUS_NOTHING;
-    *sample = sample_of(*device);
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_server_status(const tactus_server* server, uint32_t client, tactus_session_status* status,
+tactus_status tactus_server_status(tactus_server* server, uint32_t client, uint64_t now, tactus_session_status* status,
                                    tactus_error* error) {
   return call(error, [&]() -> Outcome {
     TACTUS_TRY(const std::uint16_t which, client_of(server, client));
     TACTUS_CHECK(check_answer(status));
-    answer(status, status_of(server->server.status(which)));
+    TACTUS_TRY(SessionServer * of, at(server, now));
+    tactus_session_status told = status_of(of->status(which));
+    if (const auto device = of->device(which, now)) {
+      told.has_device = 1;
+      told.device = sample_of(*device);
+    }
+    answer(status, told);
     return TACTUS_OK;
   });
 }

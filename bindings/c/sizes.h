@@ -41,29 +41,34 @@ TACTUS_SIZED(tactus_limits, TACTUS_UP_TO(tactus_limits, basis_work));
 TACTUS_SIZED(tactus_packet_info, TACTUS_UP_TO(tactus_packet_info, restarts));
 TACTUS_SIZED(tactus_scene_info, TACTUS_UP_TO(tactus_scene_info, load_users), TACTUS_UP_TO(tactus_scene_info, interest_reach));
 TACTUS_SIZED(tactus_rigid_info, TACTUS_UP_TO(tactus_rigid_info, initial));
-TACTUS_SIZED(tactus_deformable_info, TACTUS_UP_TO(tactus_deformable_info, reserved));
+TACTUS_SIZED(tactus_deformable_info, TACTUS_UP_TO(tactus_deformable_info, has_stiffness));
+TACTUS_SIZED(tactus_mesh_arrays, TACTUS_UP_TO(tactus_mesh_arrays, clusters));
+TACTUS_SIZED(tactus_player_info, TACTUS_UP_TO(tactus_player_info, header_bytes));
+TACTUS_SIZED(tactus_rigid_options, TACTUS_UP_TO(tactus_rigid_options, driven));
+TACTUS_SIZED(tactus_encoded, TACTUS_UP_TO(tactus_encoded, held_count));
 TACTUS_SIZED(tactus_receiver_options, TACTUS_UP_TO(tactus_receiver_options, limits));
 TACTUS_SIZED(tactus_scene_options, TACTUS_UP_TO(tactus_scene_options, friction),
              TACTUS_UP_TO(tactus_scene_options, interest_reach), TACTUS_UP_TO(tactus_scene_options, limits));
-TACTUS_SIZED(tactus_deformable_options, TACTUS_UP_TO(tactus_deformable_options, blend));
+TACTUS_SIZED(tactus_deformable_options, TACTUS_UP_TO(tactus_deformable_options, blend),
+             TACTUS_UP_TO(tactus_deformable_options, elastic));
 TACTUS_SIZED(tactus_driven_physics, TACTUS_UP_TO(tactus_driven_physics, damping));
 TACTUS_SIZED(tactus_elastic_physics, TACTUS_UP_TO(tactus_elastic_physics, friction),
              TACTUS_UP_TO(tactus_elastic_physics, sub_steps));
 TACTUS_SIZED(tactus_sender_options, TACTUS_UP_TO(tactus_sender_options, load));
 TACTUS_SIZED(tactus_truth, TACTUS_UP_TO(tactus_truth, load_count), TACTUS_UP_TO(tactus_truth, moved_count));
 TACTUS_SIZED(tactus_event, TACTUS_UP_TO(tactus_event, bound_scale));
-TACTUS_SIZED(tactus_session_status, TACTUS_UP_TO(tactus_session_status, wrong_states),
-             TACTUS_UP_TO(tactus_session_status, world));
+TACTUS_SIZED(tactus_session_status, TACTUS_UP_TO(tactus_session_status, wrong_states), TACTUS_UP_TO(tactus_session_status, world),
+             TACTUS_UP_TO(tactus_session_status, device));
 TACTUS_SIZED(tactus_server_options, TACTUS_UP_TO(tactus_server_options, sender), TACTUS_UP_TO(tactus_server_options, world));
 TACTUS_SIZED(tactus_client_options, TACTUS_UP_TO(tactus_client_options, limits), TACTUS_UP_TO(tactus_client_options, reserved));
-TACTUS_SIZED(tactus_trace_info, TACTUS_UP_TO(tactus_trace_info, source));
+TACTUS_SIZED(tactus_trace_info, TACTUS_UP_TO(tactus_trace_info, source), TACTUS_UP_TO(tactus_trace_info, reserved));
 TACTUS_SIZED(tactus_trace_object, TACTUS_UP_TO(tactus_trace_object, name));
 TACTUS_SIZED(tactus_trace_user, TACTUS_UP_TO(tactus_trace_user, name), TACTUS_UP_TO(tactus_trace_user, reserved));
-TACTUS_SIZED(tactus_trace_mesh, TACTUS_UP_TO(tactus_trace_mesh, name));
+TACTUS_SIZED(tactus_trace_mesh, TACTUS_UP_TO(tactus_trace_mesh, name), TACTUS_UP_TO(tactus_trace_mesh, corners));
 TACTUS_SIZED(tactus_trace_coding, TACTUS_UP_TO(tactus_trace_coding, deformable), TACTUS_UP_TO(tactus_trace_coding, world_size));
 TACTUS_SIZED(tactus_errors_options, TACTUS_UP_TO(tactus_errors_options, deformable));
-TACTUS_SIZED(tactus_error_summary, TACTUS_UP_TO(tactus_error_summary, worst_ratio));
-TACTUS_SIZED(tactus_mesh_summary, TACTUS_UP_TO(tactus_mesh_summary, worst_ratio));
+TACTUS_SIZED(tactus_error_summary, TACTUS_UP_TO(tactus_error_summary, worst_ratio),
+             TACTUS_UP_TO(tactus_error_summary, violations));
 #undef TACTUS_SIZED
 #undef TACTUS_UP_TO
 

@@ -5,12 +5,12 @@
  * world frame, quaternions w x y z, time in integer ticks of the scene.
  *
  * Errors    Functions that can fail return TACTUS_OK, TACTUS_NOTHING (no error: none is there) or the class of an error. The last
- *           argument takes the error, with the rule of the specification that was broken; it may be NULL, and is written when there
- *           is an error. After an error outputs and objects are unchanged unless the function's comment says otherwise.
+ *           argument takes the error, with the rule of the specification that was broken and its texts; it may be NULL, and is written when
+ *           there is an error. After an error outputs and objects are unchanged unless the function's comment says otherwise.
  *           NULL and indices that name nothing give TACTUS_INVALID_ARGUMENT R-API-12.
  * Objects   are made by _create, _open, _parse or _build, and destroyed by _destroy, which takes NULL. What a function returns as
  *           `const` or calls borrowed belongs to the object that it came from.
- * Options   are structs with their size, filled with the defaults by _init; NULL stands for all of the defaults. Structs for
+ * Options   are structs with their size, filled with the defaults by tactus_init; NULL stands for all of the defaults. Structs for
  *           answers need their size alone: tactus_packet_info info = {.size = sizeof info}.
  * Versions  Structs with a size grow at their end in later versions; the others never change. So a program may be older or newer than the
  *           library. Where its struct is
@@ -61,10 +61,17 @@ enum {
   TACTUS_BUFFER_TOO_SMALL = 65
 };
 
+/* Texts are static but the last two, which live until the next call of the object that failed, or of this thread where there is none. */
 typedef struct tactus_error {
   tactus_status status;
-  const char* rule;    /* name in spec/rules.csv, such as "R-STR-4"; static */
+  int32_t advice;      /* to a receiver: TACTUS_ADVICE_... */
   uint64_t bit_offset; /* position in the input, in bits; 0 when there is none */
+  const char* name;    /* of the class: "malformed" */
+  const char* rule;    /* in spec/rules.csv, such as "R-STR-4" */
+  const char* text;    /* "the check value of a record does not match" */
+  const char* remedy;  /* a sentence on how to fix it, may be empty */
+  const char* object;  /* of a scene, that it concerns; may be empty */
+  const char* detail;  /* figures of this case, or all that a recording has to say: file, row, value, remedy; may be empty */
 } tactus_error;
 
 /* How a receiver reacts to what it cannot decode. */
@@ -75,11 +82,32 @@ enum {
   TACTUS_ADVICE_CLOSE = 3        /* neither the scene nor the packets after it can be used */
 };
 
-TACTUS_API uint32_t tactus_version(void);                              /* of the library, as TACTUS_VERSION */
-TACTUS_API const char* tactus_status_name(tactus_status status);       /* "malformed"; static, as the two texts below */
-TACTUS_API const char* tactus_error_text(const tactus_error* error);   /* "the check value of a record does not match" */
-TACTUS_API const char* tactus_error_remedy(const tactus_error* error); /* a sentence on how to fix it, may be empty */
-TACTUS_API int32_t tactus_error_advice(const tactus_error* error);     /* TACTUS_ADVICE_... */
+TACTUS_API uint32_t tactus_version(void); /* of the library, as TACTUS_VERSION */
+/* The error of one who breaks a rule, such as that of tactus_held, with its texts.   in  rule  lives as long as the error; NULL: ""
+   out  error  name and texts are "unknown" or empty where there are none   err  R-API-12 NULL */
+TACTUS_API tactus_status tactus_describe(tactus_status status, const char* rule, tactus_error* error);
+
+/* ---------------------------------------------------------------- options */
+
+/* Structs of tactus.h, tactus_encoder.h and tactus_session.h that have defaults. */
+enum {
+  TACTUS_RIGID_BOUNDS = 1,
+  TACTUS_DEFORMABLE_BOUNDS = 2,
+  TACTUS_LOAD_BOUNDS = 3,
+  TACTUS_LIMITS = 4,
+  TACTUS_RECEIVER_OPTIONS = 5,
+  TACTUS_SCENE_OPTIONS = 6,
+  TACTUS_RIGID_OPTIONS = 7,
+  TACTUS_DEFORMABLE_OPTIONS = 8,
+  TACTUS_DRIVEN_PHYSICS = 9,
+  TACTUS_ELASTIC_PHYSICS = 10,
+  TACTUS_SENDER_OPTIONS = 11,
+  TACTUS_TRUTH = 12,
+  TACTUS_SERVER_OPTIONS = 13,
+  TACTUS_CLIENT_OPTIONS = 14
+};
+/* Fill a struct with its defaults.   in  kind  TACTUS_RIGID_BOUNDS of a tactus_rigid_bounds, and so on;  size  its sizeof */
+TACTUS_API tactus_status tactus_init(int32_t kind, void* options, size_t size);
 
 /* ---------------------------------------------------------------- values */
 
@@ -149,10 +177,6 @@ typedef struct tactus_load_bounds {
   double force_floor;    /* N; 0.5 */
 } tactus_load_bounds;
 
-TACTUS_API tactus_status tactus_rigid_bounds_init(tactus_rigid_bounds* bounds, size_t size);
-TACTUS_API tactus_status tactus_deformable_bounds_init(tactus_deformable_bounds* bounds, size_t size);
-TACTUS_API tactus_status tactus_load_bounds_init(tactus_load_bounds* bounds, size_t size);
-
 /* What a decoder accepts, checked before it allocates. */
 typedef struct tactus_limits {
   uint32_t size;
@@ -164,7 +188,6 @@ typedef struct tactus_limits {
   uint64_t state_bytes;  /* 2^28, of all states that are kept */
   uint64_t basis_work;   /* 2^22, units of about 0.3 us */
 } tactus_limits;
-TACTUS_API tactus_status tactus_limits_init(tactus_limits* limits, size_t size);
 
 enum { TACTUS_PROFILE_THESIS = 0, TACTUS_PROFILE_MAIN = 1 };
 enum { TACTUS_KIND_RIGID = 0, TACTUS_KIND_DEFORMABLE = 1, TACTUS_KIND_LOAD = 2 };
@@ -225,8 +248,19 @@ typedef struct tactus_deformable_info {
   uint32_t rings;      /* size of the area of interest around a touched triangle */
   uint32_t clusters;   /* of vertices that move alike, which make 12 modes each; 0: none */
   uint32_t blend;      /* rounds in which the clusters are blended where they meet */
-  uint32_t reserved;
+  uint32_t has_stiffness;
 } tactus_deformable_info;
+
+/* The caller's room for the arrays of a deformable object; NULL: not wanted. */
+typedef struct tactus_mesh_arrays {
+  uint32_t size;
+  uint32_t vertices, triangles; /* for so many there is room: at least those of tactus_deformable_info */
+  uint32_t reserved;
+  float* rest;       /* x y z of each vertex at rest, m, world */
+  uint32_t* corners; /* 3 corners of each, counter-clockwise seen from outside */
+  double* stiffness; /* of each vertex, N/m, infinite where it does not move */
+  uint8_t* clusters; /* cluster of each vertex */
+} tactus_mesh_arrays;
 
 /* Parse a scene declaration from the front of `bytes`.   out  used  bytes that it took; may be NULL
    err  R-STR, R-DEF */
@@ -241,24 +275,14 @@ TACTUS_API tactus_status tactus_scene_get_rigid(const tactus_scene* scene, uint3
                                                 tactus_error* error);
 TACTUS_API tactus_status tactus_scene_get_deformable(const tactus_scene* scene, uint32_t object, tactus_deformable_info* info,
                                                      tactus_error* error);
-/* Vertices at rest, x y z of vertex 0 first, m, world.   in  capacity  [floats] at least 3 vertices */
-TACTUS_API tactus_status tactus_scene_get_rest(const tactus_scene* scene, uint32_t object, float* out, size_t capacity,
+/* Fill the arrays that are wanted.   err  TACTUS_NOTHING: it has no stiffness, or no clusters, that were wanted; nothing is written */
+TACTUS_API tactus_status tactus_scene_get_mesh(const tactus_scene* scene, uint32_t object, const tactus_mesh_arrays* arrays,
                                                tactus_error* error);
-/* Corners, counter-clockwise seen from outside.   in  capacity  [numbers] at least 3 triangles */
-TACTUS_API tactus_status tactus_scene_get_triangles(const tactus_scene* scene, uint32_t object, uint32_t* out, size_t capacity,
-                                                    tactus_error* error);
-/* Stiffness of each vertex, N/m, infinite where it does not move. TACTUS_NOTHING: not declared.   in  capacity  at least the vertices */
-TACTUS_API tactus_status tactus_scene_get_stiffness(const tactus_scene* scene, uint32_t object, double* out, size_t capacity,
-                                                    tactus_error* error);
-/* Cluster of each vertex; TACTUS_NOTHING: it has none.   in  capacity  at least the vertices */
-TACTUS_API tactus_status tactus_scene_get_clusters(const tactus_scene* scene, uint32_t object, uint8_t* out, size_t capacity,
-                                                   tactus_error* error);
-/* Bounds that the sender guarantees; TACTUS_NOTHING: not declared. */
-TACTUS_API tactus_status tactus_scene_get_rigid_bounds(const tactus_scene* scene, tactus_rigid_bounds* bounds,
-                                                       tactus_error* error);
-TACTUS_API tactus_status tactus_scene_get_deformable_bounds(const tactus_scene* scene, uint32_t object,
-                                                            tactus_deformable_bounds* bounds, tactus_error* error);
-TACTUS_API tactus_status tactus_scene_get_load_bounds(const tactus_scene* scene, tactus_load_bounds* bounds, tactus_error* error);
+/* Bounds that the sender guarantees; NULL: not wanted. TACTUS_NOTHING: one that is wanted is not declared, and nothing is written.
+   in   object  whose bounds `deformable` takes; else it does not count */
+TACTUS_API tactus_status tactus_scene_get_bounds(const tactus_scene* scene, tactus_rigid_bounds* rigid, uint32_t object,
+                                                 tactus_deformable_bounds* deformable, tactus_load_bounds* load,
+                                                 tactus_error* error);
 
 /* ---------------------------------------------------------------- receiver: packets in, replica out */
 
@@ -290,25 +314,23 @@ typedef struct tactus_update {
 
 #define TACTUS_NO_CLOCK INT64_MIN /* each packet counts as arriving in its own tick */
 
-TACTUS_API tactus_status tactus_receiver_options_init(tactus_receiver_options* options, size_t size);
 TACTUS_API tactus_status tactus_receiver_create(const tactus_scene* scene, const tactus_receiver_options* options,
                                                 tactus_receiver** receiver, tactus_error* error);
 TACTUS_API void tactus_receiver_destroy(tactus_receiver* receiver); /* does nothing to a borrowed one */
 TACTUS_API const tactus_scene* tactus_receiver_scene(const tactus_receiver* receiver);
 /* Decode a packet.   in  now  [ticks] time of arrival on the receiver's clock, or TACTUS_NO_CLOCK;  info  may be NULL
-   err  tactus_error_advice() says how to react: R-PKT, R-RIG, R-DEF, R-RNG */
+   err  its advice says how to react: R-PKT, R-RIG, R-DEF, R-RNG */
 TACTUS_API tactus_status tactus_receiver_push(tactus_receiver* receiver, const uint8_t* packet, size_t size, int64_t now,
                                               tactus_packet_info* info, tactus_error* error);
 /* Objects that the packet decoded last named.   out  count  needed or written */
 TACTUS_API tactus_status tactus_receiver_updates(const tactus_receiver* receiver, tactus_update* out, size_t capacity,
                                                  size_t* count, tactus_error* error);
-/* Poses as shown at a tick, of rigid objects `first` to `first + count - 1`.   time about 50 ns each */
+/* Poses as shown at a tick, of rigid objects `first` to `first + count - 1`.   time about 50 ns each
+   in   poses, levels  NULL: not wanted
+   out  levels  of detail, in a scene with interest: the bounds of an object are 2^level times as wide; TACTUS_OUT_OF_INTEREST: do not
+                show it. In any other scene 0 */
 TACTUS_API tactus_status tactus_receiver_poses(const tactus_receiver* receiver, int64_t tick, uint32_t first, size_t count,
-                                               tactus_pose* out, tactus_error* error);
-/* Levels of detail of rigid objects at a tick, in a scene with interest: the bounds of an object are 2^level times as wide;
-   TACTUS_OUT_OF_INTEREST: do not show it. In any other scene 0. */
-TACTUS_API tactus_status tactus_receiver_levels(const tactus_receiver* receiver, int64_t tick, uint32_t first, size_t count,
-                                                uint8_t* out, tactus_error* error);
+                                               tactus_pose* poses, uint8_t* levels, tactus_error* error);
 /* Displacements from rest as shown at a tick, x y z of vertex 0 first, m.   in  capacity  [floats] at least 3 vertices */
 TACTUS_API tactus_status tactus_receiver_displacements(tactus_receiver* receiver, uint32_t object, int64_t tick, float* out,
                                                        size_t capacity, tactus_error* error);
@@ -316,16 +338,21 @@ TACTUS_API tactus_status tactus_receiver_displacements(tactus_receiver* receiver
    in  capacity  [doubles] at least 3 (2 + load_users) */
 TACTUS_API tactus_status tactus_receiver_loads(const tactus_receiver* receiver, uint32_t object, int64_t tick, double* out,
                                                size_t capacity, tactus_error* error);
-/* Hash of the newest state of a substream; equals that of the sender. */
-TACTUS_API tactus_status tactus_receiver_state_hash(const tactus_receiver* receiver, uint32_t substream, uint64_t* hash,
-                                                    tactus_error* error);
-/* Hash of every pose as shown at a tick. */
-TACTUS_API tactus_status tactus_receiver_pose_hash(const tactus_receiver* receiver, int64_t tick, uint64_t* hash,
-                                                   tactus_error* error);
+/* Hashes that are equal at every end.   out  state  of the newest state of a substream;  poses  of every pose as shown at a tick; NULL: not
+   wanted, and its argument does not count */
+TACTUS_API tactus_status tactus_receiver_hash(const tactus_receiver* receiver, uint32_t substream, uint64_t* state, int64_t tick,
+                                              uint64_t* poses, tactus_error* error);
 
 /* ---------------------------------------------------------------- player: a stream file, tick by tick */
 
 typedef struct tactus_player tactus_player;
+
+typedef struct tactus_player_info {
+  uint32_t size;
+  uint32_t complete;     /* 1: the file has its end; valid after the last packet */
+  int64_t next_tick;     /* of the next packet; INT64_MAX at the end */
+  uint64_t header_bytes; /* of the scene declaration */
+} tactus_player_info;
 
 /* in   file  stays valid and unchanged until the player is destroyed
    err  R-STR, R-DEF, R-FIL */
@@ -336,10 +363,8 @@ TACTUS_API tactus_receiver* tactus_player_receiver(tactus_player* player); /* bo
 /* Apply the next packet that is due at `tick`; TACTUS_NOTHING when none is. Call it until then.   in  info  may be NULL
    err  R-FIL and those of tactus_receiver_push, with positions in the file */
 TACTUS_API tactus_status tactus_player_play(tactus_player* player, int64_t tick, tactus_packet_info* info, tactus_error* error);
-/* Tick of the next packet; TACTUS_NOTHING at the end. */
-TACTUS_API tactus_status tactus_player_next_tick(tactus_player* player, int64_t* tick, tactus_error* error);
-TACTUS_API uint64_t tactus_player_header_bytes(const tactus_player* player);
-TACTUS_API int32_t tactus_player_complete(const tactus_player* player); /* 1: the file has its end; valid after the last packet */
+/* err  as tactus_player_play, of the next packet */
+TACTUS_API tactus_status tactus_player_get(tactus_player* player, tactus_player_info* info, tactus_error* error);
 
 #ifdef __cplusplus
 }

@@ -38,28 +38,6 @@ typedef struct tactus_scene_options {
   const tactus_limits* limits; /* of all its receivers: for more than 4096 objects, say. NULL: defaults */
 } tactus_scene_options;
 
-typedef struct tactus_deformable_options {
-  uint32_t size;
-  uint32_t profile;      /* TACTUS_PROFILE_...; main */
-  uint32_t rings;        /* around the touched triangle; 3 */
-  uint32_t quant_bits;   /* thesis; 8 */
-  uint32_t models_kept;  /* thesis; 0 */
-  uint32_t layered;      /* separate packets for the haptic and the visual layer; 0 */
-  uint32_t weight_sets;  /* main; 0: chosen */
-  uint32_t spring_modes; /* main: modes of a network of springs that both ends compute; 0 */
-  double frame_period;   /* main: ticks from shape to shape; 1 */
-  double fade;           /* main, with a basis: fraction of corrections that fades per second; -1: chosen */
-  const uint32_t* fixed; /* spring_modes: vertices that do not move, ascending */
-  size_t fixed_count;
-  const double* vectors;   /* a basis to declare: modes x vertices x 3, any scale; NULL */
-  size_t modes;            /* 0 to 64 */
-  const double* stiffness; /* N/m of each vertex, infinite where it does not move; NULL: not declared */
-  size_t stiffness_count;  /* vertices */
-  const uint8_t* clusters; /* a basis of vertices that move alike (tactus_find_clusters): cluster of each vertex; NULL */
-  uint32_t cluster_count;  /* 0 to 64: each is below it; 0: none. In place of a basis of other kinds */
-  uint32_t blend;          /* rounds in which the clusters are blended where they meet, 0 to 32 */
-} tactus_deformable_options;
-
 /* A rigid object that a participant's device pushes or holds. */
 typedef struct tactus_driven_physics {
   uint32_t size;
@@ -73,6 +51,15 @@ typedef struct tactus_driven_physics {
 } tactus_driven_physics;
 
 enum { TACTUS_METHOD_BACKWARD_EULER = 1, TACTUS_METHOD_TR_BDF2 = 2, TACTUS_METHOD_VELOCITY_VERLET = 3 };
+
+typedef struct tactus_rigid_options {
+  uint32_t size;
+  uint32_t dof;        /* TACTUS_DOF_...; all */
+  tactus_pose initial; /* at rest; the origin */
+  /* In sessions, let a participant work out from its own device where the object goes. Packets tell what that gets wrong; NULL: do not.
+     _build checks it: err  R-API-4 a constant cannot be told */
+  const tactus_driven_physics* driven;
+} tactus_rigid_options;
 
 /* What a deformable object is made of, that a participant's device deforms. Vertices are those of the surface, then those inside. */
 typedef struct tactus_elastic_physics {
@@ -95,28 +82,40 @@ typedef struct tactus_elastic_physics {
   uint32_t sub_steps;       /* of velocity Verlet, 1 to 255, which is stable with them; 1 of the others */
 } tactus_elastic_physics;
 
-TACTUS_API tactus_status tactus_scene_options_init(tactus_scene_options* options, size_t size);
-TACTUS_API tactus_status tactus_deformable_options_init(tactus_deformable_options* options, size_t size);
+typedef struct tactus_deformable_options {
+  uint32_t size;
+  uint32_t profile;      /* TACTUS_PROFILE_...; main */
+  uint32_t rings;        /* around the touched triangle; 3 */
+  uint32_t quant_bits;   /* thesis; 8 */
+  uint32_t models_kept;  /* thesis; 0 */
+  uint32_t layered;      /* main: separate packets for the haptic and the visual layer; 0 */
+  uint32_t weight_sets;  /* main; 0: chosen */
+  uint32_t spring_modes; /* main: modes of a network of springs that both ends compute; 0 */
+  double frame_period;   /* main: ticks from shape to shape; 1 */
+  double fade;           /* main, with a basis: share of corrections that fades per second; -1: chosen */
+  const uint32_t* fixed; /* spring_modes: vertices that do not move, ascending */
+  size_t fixed_count;
+  const double* vectors;   /* a basis to declare: modes x vertices x 3, any scale; NULL */
+  size_t modes;            /* 0 to 64 */
+  const double* stiffness; /* N/m of each vertex, infinite where it does not move; NULL: not told */
+  size_t stiffness_count;  /* vertices */
+  const uint8_t* clusters; /* a basis of vertices that move alike (tactus_find_clusters): cluster of each vertex; NULL */
+  uint32_t cluster_count;  /* 0 to 64: each is below it; 0: none. In place of a basis of other kinds */
+  uint32_t blend;          /* rounds in which the clusters are blended where they meet, 0 to 32 */
+  /* In sessions, let a participant work out from its own device how the object deforms: profile main, not layered, frame_period a whole
+     number up to 1024; NULL: do not. _build checks it: err  R-ELA; R-STR-24 it is too much for a client; R-API-1, 2 an inner vertex */
+  const tactus_elastic_physics* elastic;
+} tactus_deformable_options;
+
 TACTUS_API tactus_status tactus_scene_builder_create(const tactus_scene_options* options, tactus_scene_builder** builder,
                                                      tactus_error* error);
 TACTUS_API void tactus_scene_builder_destroy(tactus_scene_builder* builder);
-/* in   initial  pose at rest, NULL: the origin;  dof  TACTUS_DOF_... */
-TACTUS_API tactus_status tactus_scene_builder_rigid(tactus_scene_builder* builder, const char* name, const tactus_pose* initial,
-                                                    uint32_t dof, tactus_error* error);
+TACTUS_API tactus_status tactus_scene_builder_rigid(tactus_scene_builder* builder, const char* name,
+                                                    const tactus_rigid_options* options, tactus_error* error);
 /* in   vertices  x y z of each [m] at rest, world;  triangles  3 corners of each, counter-clockwise seen from outside */
 TACTUS_API tactus_status tactus_scene_builder_deformable(tactus_scene_builder* builder, const char* name, const double* vertices,
                                                          size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
                                                          const tactus_deformable_options* options, tactus_error* error);
-TACTUS_API tactus_status tactus_driven_physics_init(tactus_driven_physics* physics, size_t size);
-TACTUS_API tactus_status tactus_elastic_physics_init(tactus_elastic_physics* physics, size_t size);
-/* In sessions, let a participant compute from its own device where the rigid object added last goes. Packets correct what that gets wrong.
-   _build checks it: err  R-API-4 a constant cannot be declared; R-API-14 no rigid object was added */
-TACTUS_API tactus_status tactus_scene_builder_driven(tactus_scene_builder* builder, const tactus_driven_physics* physics,
-                                                     tactus_error* error);
-/* The same of how the deformable object added last deforms: profile main, not layered, frame_period a whole number up to 1024.
-   _build checks it: err  R-ELA; R-STR-24 it is too much for a client; R-API-1, 2 an inner vertex; R-API-14 */
-TACTUS_API tactus_status tactus_scene_builder_elastic(tactus_scene_builder* builder, const tactus_elastic_physics* physics,
-                                                      tactus_error* error);
 /* Clusters of vertices that move alike, found on shapes of a recording: 40 are enough, if they are spread over it.
    in   shapes  displacements [m], x y z of vertex 0 first, one shape after the other;  most  1 to 64
    out  clusters  of each vertex, as tactus_deformable_options takes them, like  count, blend
@@ -128,12 +127,9 @@ TACTUS_API tactus_status tactus_find_clusters(const double* vertices, size_t ver
 TACTUS_API tactus_status tactus_scene_builder_declare_bounds(tactus_scene_builder* builder, const tactus_rigid_bounds* rigid,
                                                       const tactus_deformable_bounds* deformable, const tactus_load_bounds* load,
                                                       tactus_error* error);
-/* Check everything and make the scene. The builder is empty then, also after an error. */
+/* Check everything and make the scene. The builder is empty then, also after an error.
+   err  with the object that it concerns and figures, which live until the next call of the builder */
 TACTUS_API tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_scene** scene, tactus_error* error);
-/* Name of the object that the last error of _build concerns; "" none. Lives until the next call of the builder. */
-TACTUS_API const char* tactus_scene_builder_culprit(const tactus_scene_builder* builder);
-/* Figures of the case that the last error of _build is; "" none: the error's texts say all. Lives as long. */
-TACTUS_API const char* tactus_scene_builder_detail(const tactus_scene_builder* builder);
 
 /* ---------------------------------------------------------------- sender: truth in, packets out */
 
@@ -213,25 +209,37 @@ typedef struct tactus_held {
   uint32_t part;    /* TACTUS_PART_... */
   uint32_t index;   /* of the object, or of the contact */
   int64_t since;    /* tick */
-  const char* rule; /* static; tactus_error_text and _remedy of an error with it are its texts */
+  const char* rule; /* static; tactus_describe has its texts */
   const char* name; /* of the object, "" of a contact; UTF-8, lives as long as the scene */
 } tactus_held;
 
-TACTUS_API tactus_status tactus_sender_options_init(tactus_sender_options* options, size_t size);
-TACTUS_API tactus_status tactus_truth_init(tactus_truth* truth, size_t size); /* nothing */
+/* A packet that was coded; fields as those of tactus_packet_info. */
+typedef struct tactus_packet {
+  const uint8_t* data;
+  uint32_t bytes;
+  uint32_t substream;
+  int64_t tick;
+  uint64_t number;
+  uint32_t kind, sequence, key, layer, reason, updates;
+} tactus_packet;
+
+/* What came of a truth. Arrays live until the next call of the object that made them. */
+typedef struct tactus_encoded {
+  uint32_t size;
+  uint32_t reserved;
+  const tactus_packet* packets; /* mostly none */
+  size_t packet_count;
+  const tactus_held* held; /* parts of the truth that are held, mostly none */
+  size_t held_count;
+} tactus_encoded;
+
 TACTUS_API tactus_status tactus_sender_create(const tactus_scene* scene, const tactus_sender_options* options,
                                               tactus_sender** sender, tactus_error* error);
 TACTUS_API void tactus_sender_destroy(tactus_sender* sender);
-/* Evaluate a tick and code the packets it needs.   in  tick  rising   out  packets  how many, mostly 0
-   err  R-API-5 a wrong count or tick. One bad object is no error: tactus_sender_held */
-TACTUS_API tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const tactus_truth* truth, size_t* packets,
-                                              tactus_error* error);
-/* Parts of the last tick's truth that are held, mostly none.   out  count  needed or written   time 10 ns */
-TACTUS_API tactus_status tactus_sender_held(const tactus_sender* sender, tactus_held* out, size_t capacity, size_t* count,
-                                            tactus_error* error);
-/* Packet `index` of the last tick.   in  info  may be NULL   out  size  needed or written */
-TACTUS_API tactus_status tactus_sender_packet(const tactus_sender* sender, size_t index, tactus_packet_info* info, uint8_t* bytes,
-                                              size_t capacity, size_t* size, tactus_error* error);
+/* Evaluate a tick and code the packets it needs.   in  tick  rising
+   err  R-API-5 a wrong count or tick. One bad object is no error: encoded.held */
+TACTUS_API tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const tactus_truth* truth,
+                                              tactus_encoded* encoded, tactus_error* error);
 /* A receiver asks for a key packet. */
 TACTUS_API tactus_status tactus_sender_request_key(tactus_sender* sender, tactus_error* error);
 /* A receiver has decoded a packet: TACTUS_BASELINE_ACKNOWLEDGED builds on it. */
@@ -239,11 +247,9 @@ TACTUS_API tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32
                                                    tactus_error* error);
 /* in   ack_timeout  [ticks] until a packet is acknowledged, 0: not known;  loss  fraction of packets */
 TACTUS_API tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t ack_timeout, double loss, tactus_error* error);
-/* In a scene with interest: where the receiver looks from, from the next tick on. Before the first call it is sent all in full.
+/* In a scene with interest: where the receiver looks from, from the next tick on. Before the first call it is declared of all in full.
    in   viewpoints  x y z of each [m, world], two at most: others do not count;  count  0: it looks from nowhere that is known */
 TACTUS_API tactus_status tactus_sender_set_viewpoints(tactus_sender* sender, const double* viewpoints, size_t count, tactus_error* error);
-TACTUS_API tactus_status tactus_sender_state_hash(const tactus_sender* sender, uint32_t substream, uint64_t* hash,
-                                                  tactus_error* error);
 
 /* ---------------------------------------------------------------- writer: packets into a stream file */
 

@@ -20,6 +20,8 @@ enum { TACTUS_DATAGRAM_BYTES = 1200 }; /* no datagram is longer */
 
 enum { TACTUS_ROLE_OBSERVER = 0, TACTUS_ROLE_PARTICIPANT = 1 /* touches: sends the samples of a device */ };
 
+#define TACTUS_EVERY_CLIENT UINT32_MAX
+
 enum { TACTUS_ONLY_LOOKS_ON = 255 }; /* the seat of a participant that has none, as it may not */
 
 enum { TACTUS_SESSION_CLOSED = 0, TACTUS_SESSION_JOINING = 1, TACTUS_SESSION_RECEIVING = 2, TACTUS_SESSION_LIVE = 3 };
@@ -76,6 +78,10 @@ typedef struct tactus_session_status {
   uint32_t wanted_seat; /* server: 0: any */
   uint64_t token;       /* client: with which another one goes on with this session (tactus_client_options); 0: none yet */
   uint64_t world;       /* client: what the server simulates, as its program declares; 0: it does not */
+  double force_share;   /* client: fraction of a force that may be rendered, 0 to 1: without news none */
+  uint32_t has_device;  /* server: 1: the next one is known */
+  uint32_t reserved;
+  tactus_device_sample device; /* server: of a participant */
 } tactus_session_status;
 
 /* What the device feels: force = stiffness (proxy - position of the device). */
@@ -100,7 +106,6 @@ typedef struct tactus_server_options {
   uint64_t world;                      /* what is simulated, for programs of clients to compare; 0: not declared */
 } tactus_server_options;
 
-TACTUS_API tactus_status tactus_server_options_init(tactus_server_options* options, size_t size);
 /* in   entropy  64 bits from the system that nobody else can guess */
 TACTUS_API tactus_status tactus_server_create(const tactus_scene* scene, const tactus_server_options* options, uint64_t entropy,
                                               uint64_t now, tactus_server** server, tactus_error* error);
@@ -109,30 +114,26 @@ TACTUS_API void tactus_server_destroy(tactus_server* server);
 TACTUS_API tactus_status tactus_server_handle_datagram(tactus_server* server, uint64_t now, uint64_t peer,
                                                        const uint8_t* datagram, size_t size, tactus_error* error);
 TACTUS_API tactus_status tactus_server_handle_timeout(tactus_server* server, uint64_t now, tactus_error* error);
-/* Code a tick for every live client.   err  as tactus_sender_encode; all clients that can are served */
+/* Code a tick for every live client.   err  as tactus_sender_encode; all clients that can are served
+   out  encoded  NULL: not wanted. Its packets are none, as datagrams carry them; held parts are those of the last _submit that found a live
+                 client */
 TACTUS_API tactus_status tactus_server_submit(tactus_server* server, uint64_t now, int64_t tick, const tactus_truth* truth,
-                                              tactus_error* error);
-/* As tactus_sender_held, of the last _submit that found a live client.   out  count  needed or written */
-TACTUS_API tactus_status tactus_server_held(const tactus_server* server, tactus_held* out, size_t capacity, size_t* count,
-                                            tactus_error* error);
+                                              tactus_encoded* encoded, tactus_error* error);
 /* Another scene; ticks begin anew. */
 TACTUS_API tactus_status tactus_server_replace_scene(tactus_server* server, const tactus_scene* scene, uint64_t now,
                                                      tactus_error* error);
 /* What a participant plays, from 1; 0: nothing; TACTUS_ONLY_LOOKS_ON. It is signalled. Who comes back with its token has the seat that it had. */
 TACTUS_API tactus_status tactus_server_seat(tactus_server* server, uint32_t client, uint32_t seat, tactus_error* error);
-/* in   reason  TACTUS_LEAVE_... */
-TACTUS_API tactus_status tactus_server_close_client(tactus_server* server, uint32_t client, uint32_t reason, tactus_error* error);
-TACTUS_API tactus_status tactus_server_close(tactus_server* server, tactus_error* error); /* for all clients */
+/* in   client  or TACTUS_EVERY_CLIENT, who are told TACTUS_LEAVE_BYE;  reason  TACTUS_LEAVE_... */
+TACTUS_API tactus_status tactus_server_close(tactus_server* server, uint32_t client, uint32_t reason, tactus_error* error);
 /* in   capacity  at least TACTUS_DATAGRAM_BYTES */
 TACTUS_API tactus_status tactus_server_poll_datagram(tactus_server* server, uint64_t now, uint64_t* peer, uint8_t* bytes,
                                                      size_t capacity, size_t* size, tactus_error* error);
 TACTUS_API tactus_status tactus_server_poll_event(tactus_server* server, tactus_event* event, tactus_error* error);
 /* When to call _handle_timeout; TACTUS_NOTHING: never. */
 TACTUS_API tactus_status tactus_server_next_timeout(const tactus_server* server, uint64_t* time, tactus_error* error);
-/* The device of a participant; TACTUS_NOTHING: it was not heard yet, or the client has none.   in  client  below options.clients */
-TACTUS_API tactus_status tactus_server_device(tactus_server* server, uint32_t client, uint64_t now, tactus_device_sample* sample,
-                                              tactus_error* error);
-TACTUS_API tactus_status tactus_server_status(const tactus_server* server, uint32_t client, tactus_session_status* status,
+/* in   client  below options.clients */
+TACTUS_API tactus_status tactus_server_status(tactus_server* server, uint32_t client, uint64_t now, tactus_session_status* status,
                                               tactus_error* error);
 
 /* ---------------------------------------------------------------- client */
@@ -155,7 +156,6 @@ typedef struct tactus_client_options {
   uint32_t reserved;
 } tactus_client_options;
 
-TACTUS_API tactus_status tactus_client_options_init(tactus_client_options* options, size_t size);
 TACTUS_API tactus_status tactus_client_create(const tactus_client_options* options, tactus_client** client, tactus_error* error);
 TACTUS_API void tactus_client_destroy(tactus_client* client);
 /* Join.   in  nonce  64 bits from the system */
@@ -168,8 +168,8 @@ TACTUS_API tactus_status tactus_client_handle_timeout(tactus_client* client, uin
 /* The device now; at most one sample per tick counts.   in  contact  NULL: it touches nothing */
 TACTUS_API tactus_status tactus_client_submit(tactus_client* client, uint64_t now, const tactus_device_sample* sample,
                                               const tactus_device_contact* contact, tactus_error* error);
-/* In a scene with interest: where the user looks from, x y z [m, world], apart from the device; before _open, too, as an observer is sent
-   all until it has reported it. tactus_receiver_levels shows what comes of it. What is not finite, or beyond 8000 km, does not count. */
+/* In a scene with interest: where the user looks from, x y z [m, world], apart from the device; before _open, too, as an observer is declared
+   of all until it has reported it. tactus_receiver_poses declares what comes of it. What is not finite, or beyond 8000 km, does not count. */
 TACTUS_API tactus_status tactus_client_set_viewpoint(tactus_client* client, uint64_t now, const double* viewpoint, tactus_error* error);
 /* in   capacity  at least TACTUS_DATAGRAM_BYTES */
 TACTUS_API tactus_status tactus_client_poll_datagram(tactus_client* client, uint64_t now, uint8_t* bytes, size_t capacity,
@@ -180,9 +180,8 @@ TACTUS_API tactus_status tactus_client_next_timeout(const tactus_client* client,
 TACTUS_API tactus_receiver* tactus_client_receiver(tactus_client* client);
 /* TACTUS_NOTHING: none yet */
 TACTUS_API tactus_status tactus_client_shown_tick(tactus_client* client, uint64_t now, int64_t* tick, tactus_error* error);
-/* Fraction of a force that may be rendered, 0 to 1: without news none. */
-TACTUS_API tactus_status tactus_client_force_fraction(tactus_client* client, uint64_t now, double* fraction, tactus_error* error);
-TACTUS_API tactus_status tactus_client_status(const tactus_client* client, tactus_session_status* status, tactus_error* error);
+TACTUS_API tactus_status tactus_client_status(tactus_client* client, uint64_t now, tactus_session_status* status,
+                                              tactus_error* error);
 
 #ifdef __cplusplus
 }

@@ -24,8 +24,11 @@ typedef struct tactus_trace_info {
   uint32_t has_frames; /* 1: the file states how many frames it has */
   uint64_t frames;
   const char* source; /* "sim push-1dof seed 1"; UTF-8, like all names; they live as long as the trace */
+  uint32_t cut_short; /* 1: the file ends early; valid at the end */
+  uint32_t reserved;
 } tactus_trace_info;
 
+/* These three are answers of a reader, and what a writer takes. */
 typedef struct tactus_trace_object {
   uint32_t size;
   uint32_t dof; /* TACTUS_DOF_... */
@@ -46,9 +49,11 @@ typedef struct tactus_trace_user {
 typedef struct tactus_trace_mesh {
   uint32_t size;
   uint32_t vertices, triangles;
-  uint32_t fixed; /* vertices that cannot move */
+  uint32_t fixed; /* answers only: vertices that cannot move */
   double period;  /* nominal ticks from shape to shape */
   const char* name;
+  const double* rest;      /* x y z of each vertex at rest, m, world; of an answer they live as long as the trace */
+  const uint32_t* corners; /* 3 of each triangle, counter-clockwise seen from outside; likewise */
 } tactus_trace_mesh;
 
 /* A user at one tick. */
@@ -79,14 +84,13 @@ typedef struct tactus_trace_coding {
   double world_size; /* m; 0; as tactus_scene_options */
 } tactus_trace_coding;
 
-/* What the last call of this thread that opened, read or wrote a recording said when it failed, beyond its rule: file, topic or row, time,
-   value and remedy, such as "a.mcap: /cup/pose, at 3 s: ...". "" when it did not fail, or the rule says all. Lives until the next such call. */
-TACTUS_API const char* tactus_trace_error_words(void);
+enum { TACTUS_TRACE_CODING = 1, TACTUS_ERRORS_OPTIONS = 2 };
+/* As tactus_init, of a tactus_trace_coding or tactus_errors_options. */
+TACTUS_API tactus_status tactus_trace_init(int32_t kind, void* options, size_t size);
 
-/* in   path  "-": standard input   err  R-TRC */
-TACTUS_API tactus_status tactus_trace_open(const char* path, tactus_trace** trace, tactus_error* error);
-/* The same from memory that outlives the trace. */
-TACTUS_API tactus_status tactus_trace_open_memory(const uint8_t* bytes, size_t size, tactus_trace** trace, tactus_error* error);
+/* Open a file, or its bytes in memory that outlives the trace.   in  path  "-": standard input; NULL: bytes   err  R-TRC, with its detail */
+TACTUS_API tactus_status tactus_trace_open(const char* path, const uint8_t* bytes, size_t size, tactus_trace** trace,
+                                           tactus_error* error);
 TACTUS_API void tactus_trace_destroy(tactus_trace* trace);
 TACTUS_API tactus_status tactus_trace_get(const tactus_trace* trace, tactus_trace_info* info, tactus_error* error);
 TACTUS_API tactus_status tactus_trace_get_object(const tactus_trace* trace, uint32_t object, tactus_trace_object* info,
@@ -95,44 +99,30 @@ TACTUS_API tactus_status tactus_trace_get_user(const tactus_trace* trace, uint32
                                                tactus_error* error);
 TACTUS_API tactus_status tactus_trace_get_mesh(const tactus_trace* trace, uint32_t mesh, tactus_trace_mesh* info,
                                                tactus_error* error);
-/* Vertices at rest, x y z of vertex 0 first, m, world.   in  capacity  [doubles] at least 3 vertices */
-TACTUS_API tactus_status tactus_trace_get_rest(const tactus_trace* trace, uint32_t mesh, double* out, size_t capacity,
-                                               tactus_error* error);
-/* in   capacity  [numbers] at least 3 triangles */
-TACTUS_API tactus_status tactus_trace_get_triangles(const tactus_trace* trace, uint32_t mesh, uint32_t* out, size_t capacity,
-                                                    tactus_error* error);
 /* The scene of the trace, as bytes for tactus_scene_parse. Before the first call of tactus_trace_next.   out  size  needed or written */
 TACTUS_API tactus_status tactus_trace_scene(const tactus_trace* trace, const tactus_trace_coding* coding, uint8_t* bytes,
                                             size_t capacity, size_t* size, tactus_error* error);
-TACTUS_API tactus_status tactus_trace_coding_init(tactus_trace_coding* coding, size_t size);
 /* Go to the next frame; TACTUS_NOTHING at the end.   in  counts  those of the trace, or 0 for what is not wanted */
 TACTUS_API tactus_status tactus_trace_next(tactus_trace* trace, int64_t* tick, tactus_rigid_sample* objects, size_t object_count,
                                            tactus_user_sample* users, size_t user_count, tactus_error* error);
 /* The mesh in this frame, as tactus_sender_encode takes it. Displacements are NULL when the shape is not new; they live until the next
    call of tactus_trace_next. */
 TACTUS_API tactus_status tactus_trace_shape(const tactus_trace* trace, uint32_t mesh, tactus_shape* shape, tactus_error* error);
-TACTUS_API int32_t tactus_trace_cut_short(const tactus_trace* trace); /* 1: the file ends early; valid at the end */
 
 /* ---------------------------------------------------------------- trace writer */
 
 typedef struct tactus_trace_writer tactus_trace_writer;
 
-/* Describe objects, users and meshes, then add ticks. in   path  "-": standard output;  tick_rate  per second;  source  NULL: "" */
+/* Declare objects, users and meshes, then add ticks. in   path  "-": standard output;  tick_rate  per second;  source  NULL: "" */
 TACTUS_API tactus_status tactus_trace_writer_create(const char* path, uint32_t tick_rate, const char* source,
                                                     tactus_trace_writer** writer, tactus_error* error);
 /* A writer destroyed without _finish leaves a readable file without an index, if it has a tick. */
 TACTUS_API void tactus_trace_writer_destroy(tactus_trace_writer* writer);
-/* in   dof  TACTUS_DOF_...   err  R-API-5 after the first tick */
-TACTUS_API tactus_status tactus_trace_writer_object(tactus_trace_writer* writer, const char* name, uint32_t dof,
-                                                    tactus_error* error);
-/* in   senses, forces  as in tactus_trace_user   err  R-API-5 likewise; R-API-4 no such bit, or no force */
-TACTUS_API tactus_status tactus_trace_writer_user(tactus_trace_writer* writer, const char* name, uint32_t senses, uint32_t forces,
-                                                  tactus_error* error);
-/* in   vertices, triangles  as tactus_scene_builder_deformable;  period  nominal ticks from shape to shape   err  R-API-5 likewise */
-TACTUS_API tactus_status tactus_trace_writer_mesh(tactus_trace_writer* writer, const char* name, const double* vertices,
-                                                  size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
-                                                  double period, tactus_error* error);
-/* The first call makes the file.   in  tick  rising, 0 or more;  counts  of all that were described;  shapes  NULL displacements: not new
+/* One more object, user or mesh; NULL: none.   err  R-API-5 after the first tick; R-API-4 no such axis or bit, or no force */
+TACTUS_API tactus_status tactus_trace_writer_declare(tactus_trace_writer* writer, const tactus_trace_object* object,
+                                                     const tactus_trace_user* user, const tactus_trace_mesh* mesh,
+                                                     tactus_error* error);
+/* The first call makes the file.   in  tick  rising, 0 or more;  counts  of all that were declared;  shapes  NULL displacements: not new
    err  R-TRC-1, 11, 17; R-API-1, 5, 6 */
 TACTUS_API tactus_status tactus_trace_writer_add(tactus_trace_writer* writer, int64_t tick, const tactus_rigid_sample* objects,
                                                  size_t object_count, const tactus_user_sample* users, size_t user_count,
@@ -156,21 +146,18 @@ TACTUS_API void tactus_arrays_destroy(tactus_arrays* arrays);
 TACTUS_API tactus_status tactus_arrays_object(tactus_arrays* arrays, const char* name, const double* position,
                                               const double* rotation, const double* velocity, const double* angular_velocity,
                                               tactus_error* error);
-/* Rows of a user, world frame.   in  device  3 per row [m];  force  3 per row [N] on the user; one of them may be NULL */
-TACTUS_API tactus_status tactus_arrays_user(tactus_arrays* arrays, const char* name, const double* device, const double* force,
-                                            tactus_error* error);
-/* How the device of a user is turned.   in  rotation  4 per row, w x y z, any length   err  R-API-5 no such user */
-TACTUS_API tactus_status tactus_arrays_device_rotation(tactus_arrays* arrays, const char* user, const double* rotation,
-                                                       tactus_error* error);
+/* Rows of a user, world frame.   in  device  3 per row [m];  rotation  of the device, 4 per row, w x y z, any length; NULL: not known;
+   force  3 per row [N] on the user; device or force may be NULL */
+TACTUS_API tactus_status tactus_arrays_user(tactus_arrays* arrays, const char* name, const double* device, const double* rotation,
+                                            const double* force, tactus_error* error);
 /* What a user touched, so that its forces have a bound: at each tick the force stretches a spring between the device and the object.
    in   stiffness  N/m;  kind  TACTUS_CONTACT_SURFACE: what lies along the force counts; _SPRING: the whole vector, as of a grip;
    at_origin  1: the force acts at the object's origin, of a user without a device   err  R-API-5, 4: when it is written */
 TACTUS_API tactus_status tactus_arrays_contact(tactus_arrays* arrays, const char* user, const char* object, double stiffness,
                                                int32_t kind, int32_t at_origin, tactus_error* error);
-/* Write a trace.   err  R-CSV-4, 5, 7, 8; R-TRC-1, 11, 17; R-API-1, 2 */
-TACTUS_API tactus_status tactus_arrays_write(tactus_arrays* arrays, const char* path, tactus_error* error);
-/* What _write decided: lines "where: what (count; first location)"; after an error the last one says where. Lives until the next call. */
-TACTUS_API const char* tactus_arrays_notes(const tactus_arrays* arrays);
+/* Write a trace.   out  notes  NULL: not wanted. What was decided: lines "where: what (count; first location)", also of an error, whose
+   detail is the last one. They live until the next call   err  R-CSV-4, 5, 7, 8; R-TRC-1, 11, 17; R-API-1, 2 */
+TACTUS_API tactus_status tactus_arrays_write(tactus_arrays* arrays, const char* path, const char** notes, tactus_error* error);
 
 /* ---------------------------------------------------------------- errors of what a client shows */
 
@@ -186,47 +173,36 @@ typedef struct tactus_errors_options {
 } tactus_errors_options;
 
 enum {
-  TACTUS_ERROR_POSITION = 0, /* m, against visual_position */
-  TACTUS_ERROR_ROTATION = 1, /* rad, against visual_rotation */
-  TACTUS_ERROR_FORCE = 2,    /* N, of the contact itself, against the haptic rule */
-  TACTUS_ERROR_PERCEIVED = 3 /* N, the same errors against what people notice */
+  TACTUS_ERROR_POSITION = 0,  /* m, against visual_position */
+  TACTUS_ERROR_ROTATION = 1,  /* rad, against visual_rotation */
+  TACTUS_ERROR_FORCE = 2,     /* N, of the contact itself, against the haptic rule */
+  TACTUS_ERROR_PERCEIVED = 3, /* N, the same errors against what people notice */
+  TACTUS_ERROR_SHAPE = 4      /* m, of the vertices of a mesh, against v and h */
 };
 
 typedef struct tactus_error_summary {
   uint32_t size;
   uint32_t reserved;
-  uint64_t ticks;       /* with a sample */
-  uint64_t ticks_over;  /* with one over its bound */
-  uint64_t longest_run; /* ticks: of such ticks */
+  uint64_t ticks;       /* with a sample; shape: with a new one */
+  uint64_t ticks_over;  /* with one over its bound; shape: 0 */
+  uint64_t longest_run; /* ticks: of such ticks; shape: 0 */
   double rms, max;
-  double worst_ratio; /* force: largest error over the permitted one; else 0 */
+  double worst_ratio;  /* force, shape: largest error over the permitted one; else 0 */
+  uint64_t vertices;   /* shape: compared, in all ticks */
+  uint64_t violations; /* shape: of them over their bound */
 } tactus_error_summary;
 
-typedef struct tactus_mesh_summary {
-  uint32_t size;
-  uint32_t reserved;
-  uint64_t frames;
-  uint64_t vertices;   /* compared, in all frames */
-  uint64_t violations; /* of them over their bound */
-  double rms, max;     /* m */
-  double worst_ratio;  /* largest error over its bound */
-} tactus_mesh_summary;
-
-TACTUS_API tactus_status tactus_errors_options_init(tactus_errors_options* options, size_t size);
 TACTUS_API tactus_status tactus_errors_create(const tactus_trace* truth, const tactus_errors_options* options,
                                               tactus_errors** errors, tactus_error* error);
 TACTUS_API void tactus_errors_destroy(tactus_errors* errors);
-/* Compare with the trace's frame.   in  shown  one pose per object */
-TACTUS_API tactus_status tactus_errors_add(tactus_errors* errors, const tactus_trace* truth, const tactus_pose* shown,
-                                           size_t count, tactus_error* error);
-/* Compare a mesh with that of the trace's frame; TACTUS_NOTHING when it is not new there.   in  shown  displacements, m */
-TACTUS_API tactus_status tactus_errors_add_shape(tactus_errors* errors, const tactus_trace* truth, uint32_t mesh,
-                                                 const float* shown, size_t vertices, tactus_error* error);
-/* in   quantity  TACTUS_ERROR_... */
-TACTUS_API tactus_status tactus_errors_get(const tactus_errors* errors, uint32_t quantity, tactus_error_summary* summary,
+/* Compare with the trace's frame.   in  poses  as shown, one per object, or NULL;  shapes  as shown, one per mesh, or NULL: of each its
+   displacements count, and only where the mesh is new in the frame; NULL displacements: not shown */
+TACTUS_API tactus_status tactus_errors_add(tactus_errors* errors, const tactus_trace* truth, const tactus_pose* poses,
+                                           size_t pose_count, const tactus_shape* shapes, size_t shape_count,
                                            tactus_error* error);
-TACTUS_API tactus_status tactus_errors_get_mesh(const tactus_errors* errors, uint32_t mesh, tactus_mesh_summary* summary,
-                                                tactus_error* error);
+/* in   quantity  TACTUS_ERROR_...;  mesh  of TACTUS_ERROR_SHAPE; else it does not count */
+TACTUS_API tactus_status tactus_errors_get(const tactus_errors* errors, uint32_t quantity, uint32_t mesh,
+                                           tactus_error_summary* summary, tactus_error* error);
 
 #ifdef __cplusplus
 }

@@ -44,6 +44,8 @@ std::uint32_t bits_of(RecordedForces forces) noexcept {
   return forces == RecordedForces::rendered ? TACTUS_FORCE_RENDERED : TACTUS_FORCE_SERVER;
 }
 
+static_assert(sizeof(Vec3) == 3 * sizeof(double), "handed out as three numbers");
+
 void put(const Vec3& v, double (&out)[3]) noexcept {
   out[0] = v.x;
   out[1] = v.y;
@@ -160,28 +162,24 @@ tl::unexpected<Error> keep_words(const Diagnostic& error) {
 using namespace tactus;
 using namespace tactus::c;
 
-const char* tactus_trace_error_words(void) { return error_words().c_str(); }
-
-tactus_status tactus_trace_coding_init(tactus_trace_coding* coding, size_t size) { return init(coding, size, kCoding); }
-
-tactus_status tactus_trace_open(const char* path, tactus_trace** trace, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    error_words().clear();
-    if (path == nullptr || trace == nullptr) return refuse();
-    auto reader = TraceReader::open(path, {});
-    if (!reader) return keep_words(reader.error());
-    return hand_out({.reader = *std::move(reader), .path = path}, trace);
-  });
+tactus_status tactus_trace_init(int32_t kind, void* options, size_t size) {
+  switch (kind) {
+    case TACTUS_TRACE_CODING:
+      return init(static_cast<tactus_trace_coding*>(options), size, kCoding);
+    case TACTUS_ERRORS_OPTIONS:
+      return init(static_cast<tactus_errors_options*>(options), size, defaults<tactus_errors_options>());
+    default:
+      return TACTUS_INVALID_ARGUMENT;
+  }
 }
 
-tactus_status tactus_trace_open_memory(const uint8_t* bytes, size_t size, tactus_trace** trace, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
+tactus_status tactus_trace_open(const char* path, const uint8_t* bytes, size_t size, tactus_trace** trace, tactus_error* error) {
+  return call_with_words(error, [&]() -> Outcome {
     TACTUS_TRY(const auto all, span_of(bytes, size));
-    if (trace == nullptr) return refuse();
-    error_words().clear();
-    auto reader = TraceReader::open_memory(all, {});
+    if (trace == nullptr || (path == nullptr && bytes == nullptr)) return refuse();
+    auto reader = path != nullptr ? TraceReader::open(path, {}) : TraceReader::open_memory(all, {});
     if (!reader) return keep_words(reader.error());
-    return hand_out({.reader = *std::move(reader), .path = {}, .bytes = all}, trace);
+    return hand_out({.reader = *std::move(reader), .path = path != nullptr ? path : "", .bytes = all}, trace);
   });
 }
 
@@ -199,7 +197,9 @@ tactus_status tactus_trace_get(const tactus_trace* trace, tactus_trace_info* inf
                   .meshes = static_cast<std::uint32_t>(of->meshes.size()),
                   .has_frames = frames.has_value(),
                   .frames = frames.value_or(0),
-                  .source = of->source.c_str()});
+                  .source = of->source.c_str(),
+                  .cut_short = trace->reader.cut_short(),
+                  .reserved = 0});
     return TACTUS_OK;
   });
 }
@@ -236,31 +236,9 @@ tactus_status tactus_trace_get_mesh(const tactus_trace* trace, uint32_t mesh, ta
                   .triangles = static_cast<std::uint32_t>(of->rest.triangles.size()),
                   .fixed = static_cast<std::uint32_t>(of->fixed.size()),
                   .period = of->period,
-                  .name = of->name.c_str()});
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_trace_get_rest(const tactus_trace* trace, uint32_t mesh, double* out, size_t capacity, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_TRY(const TraceDeformable* of, mesh_of(trace, mesh));
-    if (out == nullptr) return refuse();
-    if (capacity < 3 * of->rest.vertices.size()) return TACTUS_BUFFER_TOO_SMALL;
-    for (const Vec3& v : of->rest.vertices)
-      for (const double component : {v.x, v.y, v.z}) *out++ = component;
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_trace_get_triangles(const tactus_trace* trace, uint32_t mesh, uint32_t* out, size_t capacity,
-                                         tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_TRY(const TraceDeformable* of, mesh_of(trace, mesh));
-    if (of->rest.triangles.empty()) return TACTUS_OK;
-    if (out == nullptr) return refuse();
-    if (capacity < 3 * of->rest.triangles.size()) return TACTUS_BUFFER_TOO_SMALL;
-    for (const Triangle& triangle : of->rest.triangles)
-      for (const std::uint32_t corner : triangle) *out++ = corner;
+                  .name = of->name.c_str(),
+                  .rest = of->rest.vertices.empty() ? nullptr : &of->rest.vertices[0].x,
+                  .corners = of->rest.triangles.empty() ? nullptr : of->rest.triangles[0].data()});
     return TACTUS_OK;
   });
 }
@@ -277,14 +255,13 @@ tactus_status tactus_trace_scene(const tactus_trace* trace, const tactus_trace_c
 
 tactus_status tactus_trace_next(tactus_trace* trace, int64_t* tick, tactus_rigid_sample* objects, size_t object_count,
                                 tactus_user_sample* users, size_t user_count, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
+  return call_with_words(error, [&]() -> Outcome {
     if (trace == nullptr || tick == nullptr) return refuse();
     const TraceInfo& info = trace->reader.info();
     const auto fits = [](std::size_t count, std::size_t all, const void* out) {
       return count == 0 || (count == all && out != nullptr);
     };
     if (!fits(object_count, info.objects.size(), objects) || !fits(user_count, info.users.size(), users)) return refuse();
-    error_words().clear();
     if (!trace->has_frame) return TACTUS_NOTHING;
     if (!trace->is_first) TACTUS_CHECK(read_frame(*trace));
     trace->is_first = false;
@@ -311,5 +288,3 @@ tactus_status tactus_trace_shape(const tactus_trace* trace, uint32_t mesh, tactu
     return TACTUS_OK;
   });
 }
-
-int32_t tactus_trace_cut_short(const tactus_trace* trace) { return trace != nullptr && trace->reader.cut_short() ? 1 : 0; }

@@ -37,7 +37,9 @@ tactus_error_summary summary_of(const ErrorSeries& series) noexcept {
           .longest_run = series.longest_run(),
           .rms = series.rms(),
           .max = series.max(),
-          .worst_ratio = 0};
+          .worst_ratio = 0,
+          .vertices = 0,
+          .violations = 0};
 }
 
 /// The truth to compare with.   err  R-API-12 no frame; R-API-5 of another scene
@@ -49,15 +51,28 @@ Result<const TraceFrame*> truth_of(const tactus_errors* errors, const tactus_tra
   return frame;
 }
 
+tactus_error_summary summary_of(const DeformableErrors& mesh) noexcept {
+  tactus_error_summary out{};
+  out.ticks = mesh.frames();
+  out.rms = std::sqrt(mesh.all().mse());
+  out.max = mesh.all().max;
+  out.worst_ratio = mesh.worst_ratio();
+  out.vertices = mesh.all().vertices;
+  out.violations = mesh.all().violations;
+  return out;
+}
+
 }  // namespace
+
+template <>
+tactus_errors_options defaults<tactus_errors_options>() noexcept {
+  return errors_options();
+}
+
 }  // namespace tactus::c
 
 using namespace tactus;
 using namespace tactus::c;
-
-tactus_status tactus_errors_options_init(tactus_errors_options* options, size_t size) {
-  return init(options, size, errors_options());
-}
 
 tactus_status tactus_errors_create(const tactus_trace* truth, const tactus_errors_options* options, tactus_errors** errors,
                                    tactus_error* error) {
@@ -81,59 +96,47 @@ tactus_status tactus_errors_create(const tactus_trace* truth, const tactus_error
 
 void tactus_errors_destroy(tactus_errors* errors) { delete errors; }
 
-tactus_status tactus_errors_add(tactus_errors* errors, const tactus_trace* truth, const tactus_pose* shown, size_t count,
-                                tactus_error* error) {
+tactus_status tactus_errors_add(tactus_errors* errors, const tactus_trace* truth, const tactus_pose* poses, size_t pose_count,
+                                const tactus_shape* shapes, size_t shape_count, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     TACTUS_TRY(const TraceFrame* frame, truth_of(errors, truth));
-    TACTUS_TRY(const auto poses, span_of(shown, count));
-    if (poses.size() != errors->shown.size()) return fail(Errc::invalid_argument, "R-API-5");
-    for (std::size_t i = 0; i < poses.size(); ++i) errors->shown[i] = pose_of(poses[i]);
-    errors->rigid.add(*frame, errors->shown);
+    TACTUS_TRY(const auto shown, span_of(poses, pose_count));
+    TACTUS_TRY(const auto forms, span_of(shapes, shape_count));
+    if ((poses != nullptr && shown.size() != errors->shown.size()) ||
+        (shapes != nullptr && forms.size() != errors->meshes.size()))
+      return fail(Errc::invalid_argument, "R-API-5");
+    for (std::size_t i = 0; i < forms.size(); ++i) {
+      const std::size_t all = errors->vertices[i];
+      if (forms[i].displacements != nullptr && (forms[i].vertices != all || frame->meshes[i].displacements.size() != 3 * all))
+        return fail(Errc::invalid_argument, "R-API-5");
+    }
+    for (std::size_t i = 0; i < shown.size(); ++i) errors->shown[i] = pose_of(shown[i]);
+    if (poses != nullptr) errors->rigid.add(*frame, errors->shown);
+    for (std::size_t i = 0; i < forms.size(); ++i) {
+      const DeformableSample& mesh = frame->meshes[i];
+      if (forms[i].displacements == nullptr || !mesh.updated) continue;
+      errors->meshes[i].add(mesh.displacements, std::span(forms[i].displacements, mesh.displacements.size()),
+                            touch_of(*frame, i));
+    }
     return TACTUS_OK;
   });
 }
 
-tactus_status tactus_errors_add_shape(tactus_errors* errors, const tactus_trace* truth, uint32_t mesh, const float* shown,
-                                      size_t vertices, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_TRY(const TraceFrame* frame, truth_of(errors, truth));
-    if (mesh >= errors->meshes.size() || shown == nullptr) return refuse();
-    const std::size_t all = errors->vertices[mesh];
-    if (vertices != all || frame->meshes[mesh].displacements.size() != 3 * all) return fail(Errc::invalid_argument, "R-API-5");
-    if (!frame->meshes[mesh].updated) return TACTUS_NOTHING;
-    errors->meshes[mesh].add(frame->meshes[mesh].displacements, std::span(shown, 3 * vertices), touch_of(*frame, mesh));
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_errors_get(const tactus_errors* errors, uint32_t quantity, tactus_error_summary* summary,
+tactus_status tactus_errors_get(const tactus_errors* errors, uint32_t quantity, uint32_t mesh, tactus_error_summary* summary,
                                 tactus_error* error) {
   return call(error, [&]() -> Outcome {
-    if (errors == nullptr || quantity > TACTUS_ERROR_PERCEIVED) return refuse();
+    if (errors == nullptr || quantity > TACTUS_ERROR_SHAPE) return refuse();
+    if (quantity == TACTUS_ERROR_SHAPE && mesh >= errors->meshes.size()) return refuse();
     TACTUS_CHECK(check_answer(summary));
+    if (quantity == TACTUS_ERROR_SHAPE) {
+      answer(summary, summary_of(errors->meshes[mesh]));
+      return TACTUS_OK;
+    }
     const ErrorMetrics& rigid = errors->rigid;
     const ErrorSeries* series[] = {&rigid.position(), &rigid.rotation(), &rigid.force(), &rigid.perceived()};
     tactus_error_summary out = summary_of(*series[quantity]);
     if (quantity == TACTUS_ERROR_FORCE) out.worst_ratio = rigid.worst_haptic_ratio();
     answer(summary, out);
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_errors_get_mesh(const tactus_errors* errors, uint32_t mesh, tactus_mesh_summary* summary,
-                                     tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    if (errors == nullptr || mesh >= errors->meshes.size()) return refuse();
-    TACTUS_CHECK(check_answer(summary));
-    const DeformableErrors& of = errors->meshes[mesh];
-    answer(summary, {.size = 0,
-                     .reserved = 0,
-                     .frames = of.frames(),
-                     .vertices = of.all().vertices,
-                     .violations = of.all().violations,
-                     .rms = std::sqrt(of.all().mse()),
-                     .max = of.all().max,
-                     .worst_ratio = of.worst_ratio()});
     return TACTUS_OK;
   });
 }

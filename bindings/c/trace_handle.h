@@ -20,8 +20,20 @@ struct tactus_trace {
 
 namespace tactus::c {
 
-/// What the last failing call of this thread has beyond its rule: tactus_trace_error_words().
+/// What the last failing call of this thread has beyond its rule: tactus_error::detail.
 std::string& error_words() noexcept;
+
+template <>
+tactus_errors_options defaults<tactus_errors_options>() noexcept;
+
+/// As call(), of a recording: the error has its words.
+template <class Body>
+tactus_status call_with_words(tactus_error* error, Body&& body) noexcept {
+  error_words().clear();
+  const tactus_status status = call(error, std::forward<Body>(body));
+  if (status != TACTUS_OK && status != TACTUS_NOTHING && error != nullptr) error->detail = error_words().c_str();
+  return status;
+}
 /// The rule of an error whose words are kept.
 tl::unexpected<Error> keep_words(const Diagnostic& error);
 

@@ -18,11 +18,12 @@ using namespace tactus::c;
 
 namespace {
 
-/// err  R-API-12 null; R-API-5 a tick was added
-Outcome check_describing(const tactus_trace_writer* writer, const char* name) noexcept {
-  if (writer == nullptr || name == nullptr) return refuse();
-  if (writer->writer) return fail(Errc::invalid_argument, "R-API-5");
-  return TACTUS_OK;
+/// err  R-API-12 no name; R-API-4 no such axis
+Result<TraceObject> declared(const tactus_trace_object& object) {
+  TACTUS_TRY(const tactus_trace_object o, given_or(&object, tactus_trace_object{}));
+  if (o.name == nullptr) return refuse();
+  if (o.dof > Dof::all) return fail(Errc::invalid_argument, "R-API-4");
+  return TraceObject{o.name, static_cast<std::uint8_t>(o.dof)};
 }
 
 DeviceSenses senses_of(std::uint32_t bits) noexcept {
@@ -55,6 +56,37 @@ UserSample sample_of(const tactus_user_sample& s) noexcept {
   return out;
 }
 
+/// err  R-API-12 no name; R-API-4 no such bit, or no force
+Result<TraceUser> declared(const tactus_trace_user& user) {
+  TACTUS_TRY(const tactus_trace_user u, given_or(&user, tactus_trace_user{}));
+  if (u.name == nullptr) return refuse();
+  if (u.senses > 15 || u.forces == 0 || u.forces > 3) return fail(Errc::invalid_argument, "R-API-4");
+  const KnownForces known = u.forces == TACTUS_FORCE_FELT     ? KnownForces::felt
+                            : u.forces == TACTUS_FORCE_SERVER ? KnownForces::server
+                                                              : KnownForces::both;
+  return TraceUser{.name = u.name, .senses = senses_of(u.senses), .forces = known};
+}
+
+/// err  R-API-12 no name or array; R-API-5 too many vertices
+Result<TraceDeformable> declared(const tactus_trace_mesh& mesh) {
+  TACTUS_TRY(const tactus_trace_mesh m, given_or(&mesh, tactus_trace_mesh{}));
+  if (m.name == nullptr) return refuse();
+  TACTUS_CHECK(span_of(m.rest, m.vertices));
+  TACTUS_CHECK(span_of(m.corners, m.triangles));
+  if (m.vertices > kMaxMeshVertices || m.triangles > kMaxMeshTriangles) return fail(Errc::invalid_argument, "R-API-5");
+  TraceDeformable out{.name = m.name, .rest = {}, .period = m.period};
+  for (std::size_t i = 0; i < m.vertices; ++i) out.rest.vertices.push_back({m.rest[3 * i], m.rest[3 * i + 1], m.rest[3 * i + 2]});
+  for (std::size_t i = 0; i < m.triangles; ++i)
+    out.rest.triangles.push_back({m.corners[3 * i], m.corners[3 * i + 1], m.corners[3 * i + 2]});
+  return out;
+}
+
+/// Add what was declared, if anything.
+template <class T>
+void add(std::optional<T>& declared, std::vector<T>& to) {
+  if (declared) to.push_back(*std::move(declared));
+}
+
 /// err  R-API-5 another number of vertices
 Result<void> take(const tactus_shape& shape, const TraceDeformable& mesh, DeformableSample& out) {
   out.updated = shape.displacements != nullptr;
@@ -81,41 +113,26 @@ tactus_status tactus_trace_writer_create(const char* path, uint32_t tick_rate, c
 
 void tactus_trace_writer_destroy(tactus_trace_writer* writer) { delete writer; }
 
-tactus_status tactus_trace_writer_object(tactus_trace_writer* writer, const char* name, uint32_t dof, tactus_error* error) {
+tactus_status tactus_trace_writer_declare(tactus_trace_writer* writer, const tactus_trace_object* object,
+                                          const tactus_trace_user* user, const tactus_trace_mesh* mesh, tactus_error* error) {
   return call(error, [&]() -> Outcome {
-    TACTUS_CHECK(check_describing(writer, name));
-    if (dof > Dof::all) return fail(Errc::invalid_argument, "R-API-4");
-    writer->info.objects.push_back({name, static_cast<std::uint8_t>(dof)});
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_trace_writer_user(tactus_trace_writer* writer, const char* name, uint32_t senses, uint32_t forces,
-                                       tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_CHECK(check_describing(writer, name));
-    if (senses > 15 || forces == 0 || forces > 3) return fail(Errc::invalid_argument, "R-API-4");
-    const RecordedForces known = forces == TACTUS_FORCE_RENDERED     ? RecordedForces::rendered
-                              : forces == TACTUS_FORCE_SERVER ? RecordedForces::server
-                                                              : RecordedForces::both;
-    writer->info.users.push_back({.name = name, .senses = senses_of(senses), .forces = known});
-    return TACTUS_OK;
-  });
-}
-
-tactus_status tactus_trace_writer_mesh(tactus_trace_writer* writer, const char* name, const double* vertices, size_t vertex_count,
-                                       const uint32_t* triangles, size_t triangle_count, double period, tactus_error* error) {
-  return call(error, [&]() -> Outcome {
-    TACTUS_CHECK(check_describing(writer, name));
-    TACTUS_CHECK(span_of(vertices, vertex_count));
-    TACTUS_CHECK(span_of(triangles, triangle_count));
-    if (vertex_count > kMaxMeshVertices) return fail(Errc::invalid_argument, "R-API-5");
-    TraceDeformable mesh{.name = name, .rest = {}, .period = period};
-    for (std::size_t i = 0; i < vertex_count; ++i)
-      mesh.rest.vertices.push_back({vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]});
-    for (std::size_t i = 0; i < triangle_count; ++i)
-      mesh.rest.triangles.push_back({triangles[3 * i], triangles[3 * i + 1], triangles[3 * i + 2]});
-    writer->info.meshes.push_back(std::move(mesh));
+    if (writer == nullptr) return refuse();
+    if (writer->writer) return fail(Errc::invalid_argument, "R-API-5");
+    std::optional<TraceObject> one_object;
+    std::optional<TraceUser> one_user;
+    std::optional<TraceDeformable> one_mesh;
+    if (object != nullptr) {
+      TACTUS_TRY(one_object, declared(*object));
+    }
+    if (user != nullptr) {
+      TACTUS_TRY(one_user, declared(*user));
+    }
+    if (mesh != nullptr) {
+      TACTUS_TRY(one_mesh, declared(*mesh));
+    }
+    add(one_object, writer->info.objects);
+    add(one_user, writer->info.users);
+    add(one_mesh, writer->info.meshes);
     return TACTUS_OK;
   });
 }

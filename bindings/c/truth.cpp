@@ -87,20 +87,48 @@ void TruthBuffer::take_loads(const double* vectors) noexcept {
   }
 }
 
-Outcome copy_held(const Scene& scene, std::span<const HeldPart> held, tactus_held* out, std::size_t capacity,
-                  std::size_t* count) noexcept {
-  if (count == nullptr || (out == nullptr && capacity > 0)) return refuse();
-  *count = held.size();
-  if (out == nullptr || held.size() > capacity) return held.empty() ? TACTUS_OK : TACTUS_BUFFER_TOO_SMALL;
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    const char* const name = name_of(scene, held[i]).data();
-    out[i] = {.part = static_cast<std::uint32_t>(held[i].part),
-              .index = held[i].index,
-              .since = held[i].since,
-              .rule = held[i].rule,
-              .name = name != nullptr ? name : ""};
+Answer::Answer(const Scene& scene) {
+  constexpr std::size_t kMostContacts = 16;
+  packets_.reserve(2 * substreams_of(scene));
+  held_.reserve(2 * (scene.objects.size() + scene.deformables.size()) + kMostContacts);
+}
+
+void Answer::take(const Scene& scene, std::int64_t tick, std::span<const Packet> packets, std::span<const HeldPart> held) {
+  clear();
+  for (const Packet& packet : packets)
+    packets_.push_back({.data = packet.bytes.data(),
+                        .bytes = static_cast<std::uint32_t>(packet.bytes.size()),
+                        .substream = static_cast<std::uint32_t>(packet.substream),
+                        .tick = tick,
+                        .number = packet.number,
+                        .kind = c::kind_of(scene, packet.substream),
+                        .sequence = packet.sequence,
+                        .key = packet.key,
+                        .layer = static_cast<std::uint32_t>(packet.layer),
+                        .reason = static_cast<std::uint32_t>(packet.reason),
+                        .updates = packet.updates});
+  for (const HeldPart& part : held) {
+    const char* const name = name_of(scene, part).data();
+    held_.push_back({.part = static_cast<std::uint32_t>(part.part),
+                     .index = part.index,
+                     .since = part.since,
+                     .rule = part.rule,
+                     .name = name != nullptr ? name : ""});
   }
-  return TACTUS_OK;
+}
+
+void Answer::clear() noexcept {
+  packets_.clear();
+  held_.clear();
+}
+
+tactus_encoded Answer::told() const noexcept {
+  return {.size = 0,
+          .reserved = 0,
+          .packets = packets_.data(),
+          .packet_count = packets_.size(),
+          .held = held_.data(),
+          .held_count = held_.size()};
 }
 
 }  // namespace tactus::c

@@ -32,9 +32,21 @@ class TruthBuffer {
   std::vector<Vec3> pushes_;  // of all loads
 };
 
-/// Parts that are held, for the caller.   err  as copy_out()
-Outcome copy_held(const Scene& scene, std::span<const HeldPart> held, tactus_held* out, std::size_t capacity,
-                  std::size_t* count) noexcept;
+/// What came of a truth, for the caller.
+class Answer {
+ public:
+  /// Room for what may be held, so that no tick allocates.
+  explicit Answer(const Scene& scene);
+
+  /// Take what came of a tick.   in  packets  they live as long as the answer is used
+  void take(const Scene& scene, std::int64_t tick, std::span<const Packet> packets, std::span<const HeldPart> held);
+  void clear() noexcept;
+  tactus_encoded told() const noexcept;
+
+ private:
+  std::vector<tactus_packet> packets_;
+  std::vector<tactus_held> held_;
+};
 
 /// err  as given_or(); R-API-4 there is no such reduction or baseline
 Result<SenderOptions> options_of(const tactus_sender_options* options) noexcept;

@@ -82,13 +82,10 @@ class Tactus {
   }
 
   error(at) {
-    const {status, rule, bit_offset: bitOffset} = this.memory.struct("tactus_error", at);
+    const {status, advice, bit_offset: bitOffset, name, rule, text, remedy} = this.memory.struct("tactus_error", at);
     return new TactusError({
-      status, bitOffset, rule: this.memory.text(rule),
-      name: this.memory.text(this.exports.tactus_status_name(status)),
-      text: this.memory.text(this.exports.tactus_error_text(at)),
-      remedy: this.memory.text(this.exports.tactus_error_remedy(at)),
-      advice: advices[this.exports.tactus_error_advice(at)],
+      status, bitOffset, name: this.memory.text(name), rule: this.memory.text(rule), text: this.memory.text(text),
+      remedy: this.memory.text(remedy), advice: advices[advice],
     });
   }
 
@@ -101,7 +98,7 @@ class Tactus {
 function withLimits(tactus, limits, body) {
   if (limits === undefined) return body(0);
   return tactus.memory.with(layouts.tactus_limits.size, (at) => {
-    tactus.exports.tactus_limits_init(at, layouts.tactus_limits.size);
+    tactus.exports.tactus_init(constants.TACTUS_LIMITS, at, layouts.tactus_limits.size);
     for (const [name, value] of Object.entries(limits)) tactus.memory.set("tactus_limits", name, at, value);
     return body(at);
   });
@@ -110,7 +107,7 @@ function withLimits(tactus, limits, body) {
 function withOptions(tactus, {interpolation = "none", limits = undefined}, body) {
   const {size} = layouts.tactus_receiver_options;
   return withLimits(tactus, limits, (limitsAt) => tactus.memory.with(size, (at) => {
-    tactus.exports.tactus_receiver_options_init(at, size);
+    tactus.exports.tactus_init(constants.TACTUS_RECEIVER_OPTIONS, at, size);
     tactus.memory.set("tactus_receiver_options", "interpolation", at, interpolations.indexOf(interpolation));
     tactus.memory.set("tactus_receiver_options", "limits", at, limitsAt);
     return body(at);
@@ -157,33 +154,41 @@ export class Scene {
     };
   }
 
-  rest(i) {
+  // One array of a deformable object, of so many bytes; null: it has none.
+  #array(i, field, bytes, read) {
     const {memory} = this.#tactus;
+    const {vertices, triangles} = this.deformables[i];
+    return memory.with(bytes, (at) => memory.withAnswer("tactus_mesh_arrays", (arrays) => {
+      const given = {vertices, triangles, [field]: at};
+      for (const [name, value] of Object.entries(given)) memory.set("tactus_mesh_arrays", name, arrays, value);
+      return this.#tactus.call("tactus_scene_get_mesh", this.handle, i, arrays) ? read(at) : null;
+    }));
+  }
+
+  rest(i) {
     const count = 3 * this.deformables[i].vertices;
-    return memory.with(4 * count, (at) => {
-      this.#tactus.call("tactus_scene_get_rest", this.handle, i, at, count);
-      return memory.floats(at, count).slice();
-    });
+    return this.#array(i, "rest", 4 * count, (at) => this.#tactus.memory.floats(at, count).slice());
   }
 
   triangles(i) {
-    const {memory} = this.#tactus;
     const count = 3 * this.deformables[i].triangles;
-    return memory.with(4 * count, (at) => {
-      this.#tactus.call("tactus_scene_get_triangles", this.handle, i, at, count);
-      return memory.numbers(at, count).slice();
-    });
+    return this.#array(i, "corners", 4 * count, (at) => this.#tactus.memory.numbers(at, count).slice());
   }
 
   stiffness(i) {
-    const {memory} = this.#tactus;
     const count = this.deformables[i].vertices;
-    return memory.with(8 * count, (at) =>
-      this.#tactus.call("tactus_scene_get_stiffness", this.handle, i, at, count) ? memory.doubles(at, count).slice() : null);
+    return this.#array(i, "stiffness", 8 * count, (at) => this.#tactus.memory.doubles(at, count).slice());
+  }
+
+  // Bounds of a kind; null: they are not declared. The arguments before and after their place in memory are those of the function.
+  #bounds(struct, before, after) {
+    const {memory} = this.#tactus;
+    return memory.withAnswer(struct, (at) =>
+      this.#tactus.call("tactus_scene_get_bounds", this.handle, ...before, at, ...after) ? memory.struct(struct, at) : null);
   }
 
   get rigidBounds() {
-    const bounds = this.#tactus.ask("tactus_rigid_bounds", "tactus_scene_get_rigid_bounds", this.handle);
+    const bounds = this.#bounds("tactus_rigid_bounds", [], [0, 0, 0]);
     return bounds && {
       haptic: hapticRules[bounds.haptic], heartbeat: bounds.heartbeat, visualPosition: bounds.visual_position,
       visualRotation: bounds.visual_rotation, weberFraction: bounds.weber_fraction, perceptualFraction: bounds.perceptual_fraction,
@@ -193,7 +198,7 @@ export class Scene {
   }
 
   deformableBounds(i) {
-    const bounds = this.#tactus.ask("tactus_deformable_bounds", "tactus_scene_get_deformable_bounds", this.handle, i);
+    const bounds = this.#bounds("tactus_deformable_bounds", [0, i], [0]);
     return bounds && {
       visual: bounds.visual, weberFraction: bounds.haptic ? bounds.weber_fraction : null, depthFloor: bounds.depth_floor,
       kept: bounds.kept !== 0,
@@ -247,7 +252,7 @@ export class Receiver {
   poses(tick, out = new Float64Array(7 * this.scene.rigid.length)) {
     const count = this.scene.rigid.length;
     return this.#tactus.memory.with(8 * 7 * count, (at) => {
-      this.#tactus.call("tactus_receiver_poses", this.#handle, BigInt(tick), 0, count, at);
+      this.#tactus.call("tactus_receiver_poses", this.#handle, BigInt(tick), 0, count, at, 0);
       out.set(this.#tactus.memory.doubles(at, 7 * count));
       return out;
     });
@@ -271,16 +276,16 @@ export class Receiver {
   }
 
   stateHash(substream) {
-    return this.#hash("tactus_receiver_state_hash", substream);
+    return this.#hash((at) => [substream, at, 0n, 0]);
   }
 
   poseHash(tick) {
-    return this.#hash("tactus_receiver_pose_hash", BigInt(tick));
+    return this.#hash((at) => [0, 0, BigInt(tick), at]);
   }
 
-  #hash(name, of) {
+  #hash(argumentsFor) {
     return this.#tactus.memory.with(8, (at) => {
-      this.#tactus.call(name, this.#handle, of, at);
+      this.#tactus.call("tactus_receiver_hash", this.#handle, ...argumentsFor(at));
       return this.#tactus.memory.view.getBigUint64(at, true).toString(16).padStart(16, "0");
     });
   }
@@ -320,17 +325,21 @@ export class Player {
     return info && packetOf(info);
   }
 
+  #info() {
+    return this.#tactus.ask("tactus_player_info", "tactus_player_get", this.#handle);
+  }
+
   nextTick() {
-    return this.#tactus.memory.with(8, (at) =>
-      this.#tactus.call("tactus_player_next_tick", this.#handle, at) ? Number(this.#tactus.memory.view.getBigInt64(at, true)) : null);
+    const {next_tick: tick} = this.#info();
+    return tick === 2n ** 63n - 1n ? null : Number(tick);
   }
 
   get headerBytes() {
-    return Number(this.#tactus.exports.tactus_player_header_bytes(this.#handle));
+    return Number(this.#info().header_bytes);
   }
 
   get complete() {
-    return this.#tactus.exports.tactus_player_complete(this.#handle) !== 0;
+    return this.#info().complete !== 0;
   }
 
   close() {

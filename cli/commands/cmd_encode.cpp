@@ -125,8 +125,7 @@ Result<void> send(Session& s, const Packet& packet, std::int64_t tick, Report& r
 /// Holds what the client shows in this tick against the truth.
 void judge(Session& s, const TraceFrame& frame, Report& report) {
   Replica& replica = s.receiver.replica();
-  for (std::uint32_t i = 0; i < s.shown.size(); ++i)
-    s.shown[i] = to_pose(replica.pose(i, frame.tick), s.receiver.scene()->grid.position);
+  for (std::uint32_t i = 0; i < s.shown.size(); ++i) s.shown[i] = s.receiver.pose(i, frame.tick);
   if (report.fidelity) report.fidelity->add(frame, s.shown);
   if (s.figure) s.figure->add(frame, s.shown);
   for (std::size_t i = 0; i < frame.meshes.size(); ++i) {

@@ -180,6 +180,16 @@ Result<SharedScene> Scene::create(SceneSpec&& spec, const MeshSupport* meshes, c
   return out_of_memory();
 }
 
+std::optional<std::uint32_t> Scene::find(std::string_view name) const noexcept {
+  const auto place_in = [name](const auto& all) -> std::optional<std::uint32_t> {
+    for (std::uint32_t i = 0; i < all.size(); ++i)
+      if (all[i].name == name) return i;
+    return std::nullopt;
+  };
+  const auto rigid = place_in(objects);
+  return rigid ? rigid : place_in(deformables);
+}
+
 std::uint64_t state_bytes(const SceneSpec& spec) noexcept {
   const std::uint64_t states = spec.baseline_span + 2u;  // the initial one and that of the packet at hand
   const std::uint64_t load = spec.loads ? 12 * (2 + std::uint64_t{spec.loads->users}) : 0;

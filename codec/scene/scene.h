@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <tactus/base/result.h>
@@ -113,6 +114,9 @@ class Scene : public SceneSpec {
 
   /// Whether both ends of a session know the path of a device: it drives objects or deforms elastic bodies.
   bool has_paths() const noexcept { return has_paths_; }
+
+  /// Place of a rigid object, or of a deformable one, among those of its kind; nothing: none has this name.   time O(objects)
+  std::optional<std::uint32_t> find(std::string_view name) const noexcept;
 
   /// Rigid objects that can move, ascending: the only ones that packets name.
   std::span<const std::uint32_t> moving() const noexcept { return moving_; }

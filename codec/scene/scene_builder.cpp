@@ -199,8 +199,8 @@ std::string too_many(const Counts& of, const DecodeLimits& limits) {
 
 }  // namespace
 
-SceneBuilder& SceneBuilder::rigid(std::string name, const Pose& initial, std::uint8_t dof) {
-  rigid_.push_back({std::move(name), initial, dof});
+SceneBuilder& SceneBuilder::rigid(std::string name, const Pose& initial, const RigidOptions& options) {
+  rigid_.push_back({std::move(name), initial, options});
   return *this;
 }
 
@@ -215,8 +215,8 @@ const SceneBuilder::MeshParts SceneBuilder::kMeshParts{
       choose(of.coding, is_nearly_exact);
       TACTUS_TRY(DeformableObject object, make_deformable_object(of.name, of.surface, spec.grid.position));
       TACTUS_CHECK(apply(of.coding, spec.tick_rate, object));
-      if (of.elastic) {
-        TACTUS_TRY(object.body, on_grid(std::move(*of.elastic), spec.grid.position));
+      if (of.coding.elastic) {
+        TACTUS_TRY(object.body, on_grid(std::move(*of.coding.elastic), spec.grid.position));
       }
       return object;
     }};
@@ -271,18 +271,6 @@ bool SceneBuilder::can_drive(const DrivenPhysics& physics, std::uint32_t tick_ra
   return body_of(physics, tick_rate).has_value();
 }
 
-SceneBuilder& SceneBuilder::driven(const DrivenPhysics& physics) {
-  if (rigid_.empty()) is_of_nothing_ = true;
-  else rigid_.back().driven = physics;
-  return *this;
-}
-
-SceneBuilder& SceneBuilder::elastic(ElasticPhysics physics) {
-  if (deformables_.empty()) is_of_nothing_ = true;
-  else deformables_.back().elastic = std::move(physics);
-  return *this;
-}
-
 bool SceneBuilder::can_compute(const ElasticPhysics& physics, std::size_t vertices) {
   return elastic_work(physics.body, vertices + physics.inner.size()) <= DecodeLimits().elastic_work;
 }
@@ -304,7 +292,6 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
     return tl::make_unexpected(SceneFinding{error, std::move(object), std::move(detail)});
   };
   SceneBuilder taken = std::exchange(*this, SceneBuilder(spec_.tick_rate));
-  if (taken.is_of_nothing_) return refuse({Errc::invalid_argument, RuleName("R-API-14"), 0}, {});
   SceneSpec& spec = taken.spec_;
   const double ticks = std::floor(taken.extrapolation_.value_or(kExtrapolation) * spec.tick_rate + 0.5);
   if (!(ticks >= 0)) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});
@@ -317,10 +304,9 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
       return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {},
                     "a world of " + figure(metres) + " m: it is above 0 m and below " + figure(reach_of(kCoarsestGrid)) + " m");
     spec.grid = *grid;
-    const bool moves = std::ranges::any_of(taken.rigid_, [](const Rigid& object) { return object.dof != Dof::none; });
-    const double bound = taken.declared_bounds_ ? finest_bound(taken.declared_bounds_->rigid, taken.declared_bounds_->deformables,
-                                                               moves, !taken.deformables_.empty())
-                                                : 0;
+    const bool moves = std::ranges::any_of(taken.rigid_, [](const Rigid& object) { return object.options.dof != Dof::none; });
+    const double bound =
+        taken.declared_bounds_ ? finest_bound(taken.declared_bounds_->rigid, taken.declared_bounds_->deformables, moves, !taken.deformables_.empty()) : 0;
     if (bound > 0 && bound < std::ldexp(kSteps, -static_cast<int>(spec.grid.position)))
       return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {}, too_large(metres, bound));
   }
@@ -335,12 +321,12 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
       const bool is_far = initial.error().rule == std::string_view("R-API-2");
       return refuse(initial.error(), object.name, is_far ? beyond(spec.grid.position) : std::string());
     }
-    spec.objects.push_back({std::move(object.name), object.dof, *initial});
+    spec.objects.push_back({std::move(object.name), object.options.dof, *initial});
     const RigidObject& made = spec.objects.back();
     if (const RuleName rule = broken_object_rule(made)) return refuse({Errc::invalid, rule, 0}, made.name);
     if (!names.insert(made.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, made.name);
-    if (object.driven) {
-      const auto body = body_of(*object.driven, spec.tick_rate);
+    if (object.options.driven) {
+      const auto body = body_of(*object.options.driven, spec.tick_rate);
       if (!body) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, made.name);
       if (!spec.driven) spec.driven.emplace();
       spec.driven->bodies.resize(spec.objects.size());

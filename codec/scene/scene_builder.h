@@ -21,6 +21,28 @@ enum class RigidProfile : std::uint8_t {
          ///< shown and rendered does not jump, and the bounds hold meanwhile
 };
 
+/// A box or anything like it that a client's device pushes or holds.
+struct DrivenPhysics {
+  double mass = 0;       ///< [kg]
+  Vec3 inertia{};        ///< [kg m^2] about the axes of the object's frame
+  double stiffness = 0;  ///< [N/m] of the coupling between device and proxy
+  double hold = 0;       ///< [N/m] of that between device and an object that it holds; 0: it holds none
+  double friction = 0;   ///< of the proxy on it
+  double damping = 0;    ///< [1/s] rate at which its velocities die away by themselves
+};
+
+struct RigidOptions {
+  std::uint8_t dof = Dof::all;  ///< degrees of freedom (struct Dof)
+  /// Let a client predict from its own device where the object goes. In sessions alone.
+  std::optional<DrivenPhysics> driven{};
+};
+
+/// What a deformable object is made of, that a client's device deforms.
+struct ElasticPhysics {
+  ElasticBody body{};         ///< but for its inner vertices
+  std::vector<Vec3> inner{};  ///< [m] at rest, world frame
+};
+
 /// How the stream of a deformable object is coded.
 struct DeformableCoding {
   DeformableProfile profile = DeformableProfile::main;
@@ -40,28 +62,14 @@ struct DeformableCoding {
   ClusterBasis cluster_basis{};  ///< main; with clusters it takes the place of both
   /// [N/m] of each vertex, infinite where it does not move; empty: not declared. What clients with delay render by (StiffnessReduction).
   std::vector<double> stiffness{};
+  /// main: let a client work out from its own device how the object deforms. In sessions alone.
+  std::optional<ElasticPhysics> elastic{};
 };
 
 /// What moves rigid objects that nothing touches. spec/40-rigid.md section 4
 struct MotionPhysics {
   Vec3 gravity{};       ///< [m/s^2] world frame; 0: not declared
   double friction = 0;  ///< an object that slides is slowed down by this times |gravity|; 0: not declared
-};
-
-/// A box or anything like it that a client's device pushes or holds.
-struct DrivenPhysics {
-  double mass = 0;       ///< [kg]
-  Vec3 inertia{};        ///< [kg m^2] about the axes of the object's frame
-  double stiffness = 0;  ///< [N/m] of the coupling between device and proxy
-  double hold = 0;       ///< [N/m] of that between device and an object that it holds; 0: it holds none
-  double friction = 0;   ///< of the proxy on it
-  double damping = 0;    ///< [1/s] rate at which its velocities die away by themselves
-};
-
-/// What a deformable object is made of, that a client's device deforms.
-struct ElasticPhysics {
-  ElasticBody body{};         ///< but for its inner vertices
-  std::vector<Vec3> inner{};  ///< [m] at rest, world frame
 };
 
 /// What went wrong, and with which object.
@@ -79,8 +87,8 @@ class SceneBuilder {
  public:
   explicit SceneBuilder(std::uint32_t tick_rate = 1000) { spec_.tick_rate = tick_rate; }
 
-  /// in   initial  pose at rest until the first update;  dof  degrees of freedom (struct Dof)
-  SceneBuilder& rigid(std::string name, const Pose& initial = {}, std::uint8_t dof = Dof::all);
+  /// in   initial  pose at rest until the first update
+  SceneBuilder& rigid(std::string name, const Pose& initial = {}, const RigidOptions& options = {});
   /// in   surface  V vertices [m] at rest, world frame
   SceneBuilder& deformable(std::string name, TriMesh surface, DeformableCoding coding = {});
   /// The grids as they are; those of GridExponents by themselves, whose positions reach +-512 m.
@@ -97,12 +105,8 @@ class SceneBuilder {
   SceneBuilder& loads(const LoadSpec& loads);
   /// Let updates choose among predictors that know these constants. Both 0: none does.
   SceneBuilder& motion(const MotionPhysics& physics);
-  /// Let a client predict from its own device where the rigid object added last goes. In sessions alone.
-  SceneBuilder& driven(const DrivenPhysics& physics);
   /// Whether these constants can be declared: the coupling over the mass up to 4.2e6 s^-2, radii of inertia of 31 um to 1 m.
   static bool can_drive(const DrivenPhysics& physics, std::uint32_t tick_rate) noexcept;
-  /// Let a client compute from its own device how the deformable object added last deforms. In sessions alone.
-  SceneBuilder& elastic(ElasticPhysics physics);
   /// Whether every client accepts a body with so many vertices on its surface: about 10 000 in all if it is thin, 1300 of a cube.
   static bool can_compute(const ElasticPhysics& physics, std::size_t vertices);
   /// Whether velocity Verlet is stable in the body's sub-steps, with steps of `step` [s] (R-ELA-5); true of the other methods.
@@ -114,8 +118,8 @@ class SceneBuilder {
   /// Declare the bounds that hold at a client that gets every packet.
   SceneBuilder& declare_bounds(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
 
-  /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface, stiffness or world does not fit its grid; R-API-14 driven()
-  ///      before any rigid object or elastic() before any deformable one; those of Scene::create
+  /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface, stiffness or world does not fit its grid; those of
+  ///      Scene::create
   /// in   limits  those of the receivers, which must be given the same: larger than usual for a scene of more than 4096 objects, say
   tl::expected<SharedScene, SceneFinding> build(const DecodeLimits& limits = {});
 
@@ -123,14 +127,12 @@ class SceneBuilder {
   struct Rigid {
     std::string name;
     Pose initial;
-    std::uint8_t dof;
-    std::optional<DrivenPhysics> driven{};
+    RigidOptions options;
   };
   struct Deformable {
     std::string name;
     TriMesh surface;
     DeformableCoding coding;
-    std::optional<ElasticPhysics> elastic{};
   };
 
   SceneSpec spec_;
@@ -144,7 +146,6 @@ class SceneBuilder {
   struct MeshParts;
   static const MeshParts kMeshParts;
   const MeshParts* meshes_ = nullptr;  // what deformable() needs: a program that never calls it does not link that
-  bool is_of_nothing_ = false;         // driven() or elastic() came before any such object
   struct DeclaredBounds {
     RigidTriggers rigid;
     DeformableThresholds deformables;

@@ -35,7 +35,7 @@ Result<SceneBuilder> scene_builder(const TraceInfo& info, const TraceFrame& firs
   SceneBuilder scene(info.tick_rate);
   scene.rigid_profile(coding.rigid);
   for (std::size_t i = 0; i < info.objects.size(); ++i)
-    scene.rigid(info.objects[i].name, first.objects[i].pose, info.objects[i].dof);
+    scene.rigid(info.objects[i].name, first.objects[i].pose, {.dof = info.objects[i].dof});
   for (const TraceDeformable& mesh : info.meshes) TACTUS_CHECK(add_deformable(scene, mesh, coding));
   return scene;
 } catch (const std::bad_alloc&) {

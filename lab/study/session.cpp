@@ -96,7 +96,7 @@ class Judge {
     const std::uint64_t shapes_before = judged_shapes(), before = broken();
     for (PlayedShapes& shapes : shapes_) shapes.look(replica, shown);
     const bool shapes_over = broken() > before;
-    judge_poses(replica, shown, client.receiver()->scene()->grid.position);
+    judge_poses(client, shown);
     if (shown_.empty() && judged_shapes() == shapes_before) return;
     ++result_.ticks;
     result_.shape += shapes_over ? 1 : 0;
@@ -124,9 +124,9 @@ class Judge {
     for (std::size_t i = 0; i < shapes_.size(); ++i)
       if (frame.meshes[i].updated) shapes_[i].add(frame.tick, frame.meshes[i].displacements, touch_of(frame, i));
   }
-  void judge_poses(const Replica& replica, std::int64_t shown, std::uint8_t position_exp) {
+  void judge_poses(SessionClient& client, std::int64_t shown) {
     if (shown_.empty()) return;
-    for (std::uint32_t i = 0; i < shown_.size(); ++i) shown_[i] = to_pose(replica.pose(i, shown), position_exp);
+    for (std::uint32_t i = 0; i < shown_.size(); ++i) shown_[i] = client.pose(i, shown);
     const TraceFrame& truth = motion_.frames[static_cast<std::size_t>(shown)];
     errors_.add(truth, shown_);
     worst_.push_back(largest_error(truth));

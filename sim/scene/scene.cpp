@@ -394,10 +394,9 @@ SceneBuilder scene_builder(const Scene& scene, std::span<const std::optional<Dri
   if (scene.world_size) out.world_size(*scene.world_size);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    out.rigid(object.name, object.pose, object.dof);
-    if (i < driven.size() && driven[i]) out.driven(*driven[i]);
+    out.rigid(object.name, object.pose, {.dof = object.dof, .driven = i < driven.size() ? driven[i] : std::nullopt});
   }
-  for (const SceneMsd& msd : scene.msds) out.rigid(msd.name, {msd.position, {}}, msd.dof());
+  for (const SceneMsd& msd : scene.msds) out.rigid(msd.name, {msd.position, {}}, {.dof = msd.dof()});
   if (sends_loads(scene)) out.loads({.users = static_cast<std::uint8_t>(scene.users.size())});
   return out;
 }

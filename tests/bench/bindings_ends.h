@@ -29,7 +29,10 @@ namespace tactus::bench {
   std::exit(1);
 }
 inline void must(tactus_status status) {
-  if (status != TACTUS_OK) give_up(tactus_status_name(status));
+  if (status == TACTUS_OK) return;
+  tactus_error error;
+  tactus_describe(status, nullptr, &error);
+  give_up(error.name);
 }
 template <class T>
 T must(Result<T> result) {
@@ -74,22 +77,17 @@ struct Cpp {
 
   class Decoder {
    public:
-    explicit Decoder(const SharedScene& scene) : receiver_(must(Receiver::create(scene))), exp_(scene->grid.position) {}
+    explicit Decoder(const SharedScene& scene) : receiver_(must(Receiver::create(scene))) {}
     void push(std::span<const std::uint8_t> packet) { must(receiver_.push(packet)); }
     void poses(std::int64_t tick, std::span<Pose> out) {
-      for (std::uint32_t i = 0; i < out.size(); ++i) out[i] = to_pose(receiver_.replica().pose(i, tick), exp_);
+      for (std::uint32_t i = 0; i < out.size(); ++i) out[i] = receiver_.pose(i, tick);
     }
     void displacements(std::int64_t tick, std::span<float> out) {
-      float* to = out.data();
-      for (const auto& v : receiver_.replica().displacements(0, tick)) {
-        const Vec3 u = to_metres(v, exp_);
-        for (const double x : {u.x, u.y, u.z}) *to++ = static_cast<float>(x);
-      }
+      std::ranges::copy(receiver_.displacements(0, tick), out.begin());
     }
 
    private:
     Receiver receiver_;
-    unsigned exp_;
   };
 
   class Encoder {
@@ -117,8 +115,7 @@ struct Cpp {
    public:
     explicit Session(const SharedScene& scene)
         : server_(must(SessionServer::create(scene, {}, 1, 0))),
-          client_(must(SessionClient::create({.role = Role::participant}))),
-          exp_(scene->grid.position) {
+          client_(must(SessionClient::create({.role = Role::participant}))) {
       client_.open(0, 2);
     }
     void serve(std::uint64_t now, std::int64_t tick, std::span<const Sample> objects) {
@@ -135,14 +132,13 @@ struct Cpp {
       while (const auto datagram = client_.poll_datagram(now)) up_.put(*datagram);
       const std::int64_t tick = client_.shown_tick(now);
       if (tick < 0) return 0;
-      for (std::uint32_t i = 0; i < shown.size(); ++i) shown[i] = to_pose(client_.receiver()->replica().pose(i, tick), exp_);
+      for (std::uint32_t i = 0; i < shown.size(); ++i) shown[i] = client_.pose(i, tick);
       return 1;
     }
 
    private:
     SessionServer server_;
     SessionClient client_;
-    unsigned exp_;
     Datagrams up_, down_;
   };
 };
@@ -177,7 +173,7 @@ struct C {
   }
   static tactus_truth truth_of(std::span<const Sample> objects) {
     tactus_truth out;
-    must(tactus_truth_init(&out, sizeof out));
+    must(tactus_init(TACTUS_TRUTH, &out, sizeof out));
     out.objects = objects.data();
     out.object_count = objects.size();
     return out;
@@ -194,7 +190,7 @@ struct C {
       must(tactus_receiver_push(receiver_.get(), packet.data(), packet.size(), TACTUS_NO_CLOCK, nullptr, nullptr));
     }
     void poses(std::int64_t tick, std::span<tactus_pose> out) {
-      must(tactus_receiver_poses(receiver_.get(), tick, 0, out.size(), out.data(), nullptr));
+      must(tactus_receiver_poses(receiver_.get(), tick, 0, out.size(), out.data(), nullptr, nullptr));
     }
     void displacements(std::int64_t tick, std::span<float> out) {
       must(tactus_receiver_displacements(receiver_.get(), 0, tick, out.data(), out.size(), nullptr));
@@ -208,9 +204,9 @@ struct C {
    public:
     Encoder(const SharedScene& scene, Reduction reduction) {
       tactus_sender_options options;
-      must(tactus_sender_options_init(&options, sizeof options));
+      must(tactus_init(TACTUS_SENDER_OPTIONS, &options, sizeof options));
       tactus_rigid_bounds bounds;
-      must(tactus_rigid_bounds_init(&bounds, sizeof bounds));
+      must(tactus_init(TACTUS_RIGID_BOUNDS, &bounds, sizeof bounds));
       options.reduction = static_cast<std::int32_t>(reduction);
       options.key_interval = bounds.heartbeat = 0;
       options.rigid = &bounds;
@@ -220,11 +216,12 @@ struct C {
     }
     std::size_t encode(std::int64_t tick, std::span<const tactus_rigid_sample> objects, std::span<std::uint8_t> out) {
       const tactus_truth truth = truth_of(objects);
-      std::size_t packets = 0, size = 0;
-      must(tactus_sender_encode(sender_.get(), tick, &truth, &packets, nullptr));
-      for (std::size_t i = 0; i < packets; ++i)
-        must(tactus_sender_packet(sender_.get(), i, nullptr, out.data(), out.size(), &size, nullptr));
-      return packets;
+      tactus_encoded encoded{};
+      encoded.size = sizeof encoded;
+      must(tactus_sender_encode(sender_.get(), tick, &truth, &encoded, nullptr));
+      for (std::size_t i = 0; i < encoded.packet_count; ++i)
+        std::ranges::copy(std::span(encoded.packets[i].data, encoded.packets[i].bytes), out.begin());
+      return encoded.packet_count;
     }
 
    private:
@@ -238,7 +235,7 @@ struct C {
       must(tactus_server_create(scene_of(scene).get(), nullptr, 1, 0, &server, nullptr));
       server_.reset(server);
       tactus_client_options options;
-      must(tactus_client_options_init(&options, sizeof options));
+      must(tactus_init(TACTUS_CLIENT_OPTIONS, &options, sizeof options));
       options.role = TACTUS_ROLE_PARTICIPANT;
       tactus_client* client = nullptr;
       must(tactus_client_create(&options, &client, nullptr));
@@ -251,7 +248,7 @@ struct C {
           [&](auto bytes) { must(tactus_server_handle_datagram(server, now, kPeer, bytes.data(), bytes.size(), nullptr)); });
       must(tactus_server_handle_timeout(server, now, nullptr));
       const tactus_truth truth = truth_of(objects);
-      must(tactus_server_submit(server, now, tick, &truth, nullptr));
+      must(tactus_server_submit(server, now, tick, &truth, nullptr, nullptr));
       std::uint64_t peer = 0;
       std::size_t size = 0;
       while (tactus_server_poll_datagram(server, now, &peer, room_.data(), room_.size(), &size, nullptr) == TACTUS_OK)
@@ -269,7 +266,7 @@ struct C {
         up_.put(std::span(room_).first(size));
       std::int64_t tick = 0;
       if (tactus_client_shown_tick(client, now, &tick, nullptr) != TACTUS_OK) return 0;
-      must(tactus_receiver_poses(tactus_client_receiver(client), tick, 0, shown.size(), shown.data(), nullptr));
+      must(tactus_receiver_poses(tactus_client_receiver(client), tick, 0, shown.size(), shown.data(), nullptr, nullptr));
       return 1;
     }
 

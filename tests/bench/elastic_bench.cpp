@@ -24,8 +24,10 @@ const sim::Scene& membrane() {
 SharedScene declared() {
   const sim::SceneDeformable& object = membrane().deformables[0];
   SceneBuilder builder;
-  builder.deformable("membrane", sim::surface(object.mesh).mesh, {.frame_period = static_cast<double>(object.rate)});
-  builder.elastic(sim::elastic_physics(object, membrane().gravity, {}).value()).baselines(64);
+  const auto frame = static_cast<double>(object.rate);
+  builder.deformable("membrane", sim::surface(object.mesh).mesh,
+                     {.frame_period = frame, .elastic = sim::elastic_physics(object, membrane().gravity, {}).value()});
+  builder.baselines(64);
   return builder.build().value();
 }
 

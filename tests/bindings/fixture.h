@@ -14,10 +14,10 @@
 namespace tactus::c_test {
 
 /// Options with the defaults.
-template <auto init, class T>
+template <class T>
 T filled() {
   T out;
-  EXPECT_EQ(init(&out, sizeof out), TACTUS_OK);
+  EXPECT_EQ(init<T>(&out, sizeof out), TACTUS_OK);
   return out;
 }
 
@@ -35,9 +35,11 @@ inline Scene make_scene(bool with_sheet = false, const tactus_scene_options* opt
   tactus_scene_builder* raw = nullptr;
   EXPECT_EQ(tactus_scene_builder_create(options, &raw, nullptr), TACTUS_OK);
   const Builder builder(raw);
-  const tactus_pose above{{0, 0, 0.05}, {1, 0, 0, 0}};
-  EXPECT_EQ(tactus_scene_builder_rigid(raw, "table", nullptr, TACTUS_DOF_NONE, nullptr), TACTUS_OK);
-  EXPECT_EQ(tactus_scene_builder_rigid(raw, "cube", &above, TACTUS_DOF_ALL, nullptr), TACTUS_OK);
+  auto fixed = filled<tactus_rigid_options>(), above = filled<tactus_rigid_options>();
+  fixed.dof = TACTUS_DOF_NONE;
+  above.initial = {{0, 0, 0.05}, {1, 0, 0, 0}};
+  EXPECT_EQ(tactus_scene_builder_rigid(raw, "table", &fixed, nullptr), TACTUS_OK);
+  EXPECT_EQ(tactus_scene_builder_rigid(raw, "cube", &above, nullptr), TACTUS_OK);
   if (with_sheet) {
     const double corners[] = {0, 0, 0, 0.1, 0, 0, 0.1, 0.1, 0, 0, 0.1, 0};
     const std::uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
@@ -45,7 +47,8 @@ inline Scene make_scene(bool with_sheet = false, const tactus_scene_options* opt
   }
   EXPECT_EQ(tactus_scene_builder_declare_bounds(raw, nullptr, nullptr, nullptr, nullptr), TACTUS_OK);
   tactus_scene* scene = nullptr;
-  EXPECT_EQ(tactus_scene_builder_build(raw, &scene, nullptr), TACTUS_OK) << tactus_scene_builder_culprit(raw);
+  tactus_error error{};
+  EXPECT_EQ(tactus_scene_builder_build(raw, &scene, &error), TACTUS_OK) << error.object;
   return Scene(scene);
 }
 
@@ -88,21 +91,18 @@ inline Receiver make_receiver(const Scene& scene, const tactus_receiver_options*
 }
 
 struct Packet {
-  tactus_packet_info info = sized<tactus_packet_info>();
-  std::vector<std::uint8_t> bytes = std::vector<std::uint8_t>(4096);
+  tactus_packet info{};
+  std::vector<std::uint8_t> bytes{};
 };
 
 inline std::vector<Packet> encode(const Sender& sender, std::int64_t tick, const tactus_truth* truth) {
-  std::size_t count = 0;
+  auto encoded = sized<tactus_encoded>();
   tactus_error error{};
-  EXPECT_EQ(tactus_sender_encode(sender.get(), tick, truth, &count, &error), TACTUS_OK) << error.rule;
-  std::vector<Packet> out(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::size_t size = 0;
-    EXPECT_EQ(tactus_sender_packet(sender.get(), i, &out[i].info, out[i].bytes.data(), out[i].bytes.size(), &size, nullptr),
-              TACTUS_OK);
-    out[i].bytes.resize(size);
-    EXPECT_EQ(out[i].info.bytes, size);
+  EXPECT_EQ(tactus_sender_encode(sender.get(), tick, truth, &encoded, &error), TACTUS_OK) << error.rule;
+  std::vector<Packet> out;
+  for (std::size_t i = 0; i < encoded.packet_count; ++i) {
+    const tactus_packet& packet = encoded.packets[i];
+    out.push_back({packet, {packet.data, packet.data + packet.bytes}});
   }
   return out;
 }

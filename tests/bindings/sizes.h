@@ -21,7 +21,7 @@ struct SizedCall {
   const char* name;
   std::size_t first;
   Direction direction;
-  std::function<tactus_status(void* given, std::size_t size)> init;  ///< of options: their _init
+  std::function<tactus_status(void* given, std::size_t size)> init;  ///< of options: as tactus_init()
   std::function<tactus_status(void* given, tactus_error* error)> call;
   std::vector<std::size_t> later{};  ///< of versions in which it has grown, rising
 
@@ -32,9 +32,9 @@ template <class T, class Call>
 auto taking(Call call) {
   return [call](void* given, tactus_error* error) { return call(static_cast<T*>(given), error); };
 }
-template <auto init, class T>
+template <class T>
 auto initialised() {
-  return [](void* given, std::size_t size) { return init(static_cast<T*>(given), size); };
+  return [](void* given, std::size_t size) { return init<T>(static_cast<T*>(given), size); };
 }
 
 /// A struct of this size and, behind it, what is not the library's to touch.

@@ -32,9 +32,9 @@ using Sized =
     ::testing::Types<tactus_rigid_bounds, tactus_deformable_bounds, tactus_load_bounds, tactus_limits, tactus_packet_info,
                      tactus_scene_info, tactus_rigid_info, tactus_deformable_info, tactus_receiver_options, tactus_scene_options,
                      tactus_deformable_options, tactus_driven_physics, tactus_elastic_physics, tactus_sender_options,
-                     tactus_truth, tactus_event, tactus_session_status, tactus_server_options, tactus_client_options,
-                     tactus_trace_info, tactus_trace_object, tactus_trace_user, tactus_trace_mesh, tactus_trace_coding,
-                     tactus_errors_options, tactus_error_summary, tactus_mesh_summary>;
+                     tactus_rigid_options, tactus_mesh_arrays, tactus_player_info, tactus_encoded, tactus_truth, tactus_event,
+                     tactus_session_status, tactus_server_options, tactus_client_options, tactus_trace_info, tactus_trace_object,
+                     tactus_trace_user, tactus_trace_mesh, tactus_trace_coding, tactus_errors_options, tactus_error_summary>;
 
 /// On the heap, where a sanitizer sees what goes beyond.
 std::vector<std::uint8_t> block(std::size_t size, std::uint8_t filling) {
@@ -112,7 +112,7 @@ TYPED_TEST(ANewerProgram, ReadsZeroWhereTheLibraryKnowsNothing) {
 class CSizes : public ::testing::Test {
  protected:
   static Scene scene_with_loads() {
-    auto options = filled<tactus_scene_options_init, tactus_scene_options>();
+    auto options = filled<tactus_scene_options>();
     options.has_loads = 1;
     return make_scene(true, &options);
   }
@@ -138,23 +138,23 @@ TEST_F(CSizes, OfBounds) {
   const Builder builder(raw);
   const tactus_scene* of = scene.get();
   for (const SizedCall& call : std::vector<SizedCall>{
-           {"rigid_bounds", 80, Direction::option, initialised<tactus_rigid_bounds_init, tactus_rigid_bounds>(),
+           {"rigid_bounds", 80, Direction::option, initialised<tactus_rigid_bounds>(),
             taking<tactus_rigid_bounds>(
                 [&](auto*b, auto*e) { return tactus_scene_builder_declare_bounds(raw, b, nullptr, nullptr, e); })},
-           {"deformable_bounds", 40, Direction::option, initialised<tactus_deformable_bounds_init, tactus_deformable_bounds>(),
+           {"deformable_bounds", 40, Direction::option, initialised<tactus_deformable_bounds>(),
             taking<tactus_deformable_bounds>(
                 [&](auto*b, auto*e) { return tactus_scene_builder_declare_bounds(raw, nullptr, b, nullptr, e); })},
-           {"load_bounds", 24, Direction::option, initialised<tactus_load_bounds_init, tactus_load_bounds>(),
+           {"load_bounds", 24, Direction::option, initialised<tactus_load_bounds>(),
             taking<tactus_load_bounds>(
                 [&](auto*b, auto*e) { return tactus_scene_builder_declare_bounds(raw, nullptr, nullptr, b, e); })},
-           {"rigid_bounds declared", 80, Direction::answer, {}, taking<tactus_rigid_bounds>([&](auto*b, auto*e) {
-              return tactus_scene_get_rigid_bounds(of, b, e);
+           {"rigid_bounds stated", 80, Direction::answer, {}, taking<tactus_rigid_bounds>([&](auto*b, auto*e) {
+              return tactus_scene_get_bounds(of, b, 0, nullptr, nullptr, e);
             })},
-           {"deformable_bounds declared", 40, Direction::answer, {}, taking<tactus_deformable_bounds>([&](auto*b, auto*e) {
-              return tactus_scene_get_deformable_bounds(of, 0, b, e);
+           {"deformable_bounds stated", 40, Direction::answer, {}, taking<tactus_deformable_bounds>([&](auto*b, auto*e) {
+              return tactus_scene_get_bounds(of, nullptr, 0, b, nullptr, e);
             })},
-           {"load_bounds declared", 24, Direction::answer, {}, taking<tactus_load_bounds>([&](auto*b, auto*e) {
-              return tactus_scene_get_load_bounds(of, b, e);
+           {"load_bounds stated", 24, Direction::answer, {}, taking<tactus_load_bounds>([&](auto*b, auto*e) {
+              return tactus_scene_get_bounds(of, nullptr, 0, nullptr, b, e);
             })}})
     check_sizes(call);
 }
@@ -177,31 +177,27 @@ TEST_F(CSizes, OfADecoder) {
     tactus_receiver_destroy(out);
     return status;
   };
-  for (const SizedCall& call : std::vector<SizedCall>{
-           {"limits", 40, Direction::option, initialised<tactus_limits_init, tactus_limits>(), taking<tactus_limits>(parse)},
-           {"receiver_options", 40, Direction::option, initialised<tactus_receiver_options_init, tactus_receiver_options>(),
-            taking<tactus_receiver_options>(receive)},
-           {"scene_info",
-            48,
-            Direction::answer,
-            {},
-            taking<tactus_scene_info>([&](auto*i, auto*e) { return tactus_scene_get(of, i, e); }),
-            {64}},
-           {"rigid_info", 72, Direction::answer, {}, taking<tactus_rigid_info>([&](auto*i, auto*e) {
-              return tactus_scene_get_rigid(of, 1, i, e);
-            })},
-           {"deformable_info", 56, Direction::answer, {}, taking<tactus_deformable_info>([&](auto*i, auto*e) {
-              return tactus_scene_get_deformable(of, 0, i, e);
-            })}})
+  for (const SizedCall& call :
+       std::vector<SizedCall>{{"limits", 40, Direction::option, initialised<tactus_limits>(), taking<tactus_limits>(parse)},
+                              {"receiver_options", 40, Direction::option, initialised<tactus_receiver_options>(),
+                               taking<tactus_receiver_options>(receive)},
+                              {"scene_info",
+                               48,
+                               Direction::answer,
+                               {},
+                               taking<tactus_scene_info>([&](auto*i, auto*e) { return tactus_scene_get(of, i, e); }),
+                               {64}},
+                              {"rigid_info", 72, Direction::answer, {}, taking<tactus_rigid_info>([&](auto*i, auto*e) {
+                                 return tactus_scene_get_rigid(of, 1, i, e);
+                               })},
+                              {"deformable_info", 56, Direction::answer, {}, taking<tactus_deformable_info>([&](auto*i, auto*e) {
+                                 return tactus_scene_get_deformable(of, 0, i, e);
+                               })}})
     check_sizes(call);
 }
 
 TEST_F(CSizes, OfAnEncoder) {
   const Scene plain = make_scene(true);
-  const Sender sender = make_sender(plain);
-  Truth truth(true);
-  std::int64_t tick = 0;
-  while (encode(sender, tick, truth.at(tick)).empty()) ++tick;
   const auto build = [](auto* options, auto* error) {
     tactus_scene_builder* out = nullptr;
     const tactus_status status = tactus_scene_builder_create(options, &out, error);
@@ -216,13 +212,23 @@ TEST_F(CSizes, OfAnEncoder) {
     const std::uint32_t triangle[] = {0, 1, 2};
     return tactus_scene_builder_deformable(out, "sheet", corners, 3, triangle, 1, options, error);
   };
-  const auto made_of = [](auto add) {
-    return [add](auto* physics, auto* error) {
+  const auto add_rigid = [](auto change) {
+    return [change](auto* given, auto* error) {
       tactus_scene_builder* out = nullptr;
       EXPECT_EQ(tactus_scene_builder_create(nullptr, &out, nullptr), TACTUS_OK);
       const Builder builder(out);
-      return add(out, physics, error);
+      auto options = filled<tactus_rigid_options>();
+      return tactus_scene_builder_rigid(out, "cube", change(options, given), error);
     };
+  };
+  const auto drive = add_rigid([](tactus_rigid_options& o, const tactus_driven_physics* physics) {
+    o.driven = physics;
+    return &o;
+  });
+  const auto deform_elastic = [&](auto* physics, auto* error) {
+    auto options = filled<tactus_deformable_options>();
+    options.elastic = physics;
+    return deform(&options, error);
   };
   const auto send = [&](auto* options, auto* error) {
     tactus_sender* out = nullptr;
@@ -230,42 +236,54 @@ TEST_F(CSizes, OfAnEncoder) {
     tactus_sender_destroy(out);
     return status;
   };
-  const auto info_of = [&](auto* info, auto* error) {
-    std::uint8_t bytes[4096];
-    std::size_t size = 0;
-    return tactus_sender_packet(sender.get(), 0, info, bytes, sizeof bytes, &size, error);
+  const std::vector<std::uint8_t> file = make_stream();
+  const auto open = [&] {
+    tactus_player* out = nullptr;
+    EXPECT_EQ(tactus_player_open(file.data(), file.size(), nullptr, &out, nullptr), TACTUS_OK);
+    return Player(out);
   };
+  const auto tell = [&](auto* info, auto* error) { return tactus_player_play(open().get(), INT64_MAX, info, error); };
+  const Player player = open();
   const Sender idle = make_sender(sheet_alone());
   std::int64_t next = 0;
   const auto encode_nothing = [&](auto* given, auto* error) {
-    std::size_t packets = 0;
-    return tactus_sender_encode(idle.get(), next++, given, &packets, error);
+    auto encoded = sized<tactus_encoded>();
+    return tactus_sender_encode(idle.get(), next++, given, &encoded, error);
   };
   for (const SizedCall& call : std::vector<SizedCall>{
            {"scene_options",
             88,
             Direction::option,
-            initialised<tactus_scene_options_init, tactus_scene_options>(),
+            initialised<tactus_scene_options>(),
             taking<tactus_scene_options>(build),
             {104, 120}},
-           {"deformable_options", 112, Direction::option,
-            initialised<tactus_deformable_options_init, tactus_deformable_options>(), taking<tactus_deformable_options>(deform)},
-           {"driven_physics", 72, Direction::option, initialised<tactus_driven_physics_init, tactus_driven_physics>(),
-            taking<tactus_driven_physics>(made_of(tactus_scene_builder_driven))},
+           {"deformable_options",
+            112,
+            Direction::option,
+            initialised<tactus_deformable_options>(),
+            taking<tactus_deformable_options>(deform),
+            {120}},
+           {"rigid_options", 72, Direction::option, initialised<tactus_rigid_options>(),
+            taking<tactus_rigid_options>(add_rigid([](auto&, const tactus_rigid_options*given) { return given; }))},
+           {"encoded", 40, Direction::answer, {}, taking<tactus_encoded>([&](auto*out, auto*e) {
+              auto nothing = sized<tactus_truth>();
+              return tactus_sender_encode(idle.get(), next++, &nothing, out, e);
+            })},
+           {"player_info", 24, Direction::answer, {}, taking<tactus_player_info>([&](auto*i, auto*e) {
+              return tactus_player_get(player.get(), i, e);
+            })},
+           {"mesh_arrays", 48, Direction::option, {}, taking<tactus_mesh_arrays>([&](auto*a, auto*e) {
+              return tactus_scene_get_mesh(plain.get(), 0, a, e);
+            })},
+           {"driven_physics", 72, Direction::option, initialised<tactus_driven_physics>(), taking<tactus_driven_physics>(drive)},
            {"elastic_physics",
             128,
             Direction::option,
-            initialised<tactus_elastic_physics_init, tactus_elastic_physics>(),
-            taking<tactus_elastic_physics>(made_of(tactus_scene_builder_elastic)),
+            initialised<tactus_elastic_physics>(),
+            taking<tactus_elastic_physics>(deform_elastic),
             {136}},
-           {"sender_options", 64, Direction::option, initialised<tactus_sender_options_init, tactus_sender_options>(),
-            taking<tactus_sender_options>(send)},
-           {"truth",
-            72,
-            Direction::option,
-            initialised<tactus_truth_init, tactus_truth>(),
-            taking<tactus_truth>(encode_nothing),
-            {88}},
+           {"sender_options", 72, Direction::option, initialised<tactus_sender_options>(), taking<tactus_sender_options>(send)},
+           {"truth", 72, Direction::option, initialised<tactus_truth>(), taking<tactus_truth>(encode_nothing), {88}},
            {"packet_info", 64, Direction::answer, {}, taking<tactus_packet_info>(info_of)}})
     check_sizes(call);
 }
@@ -291,26 +309,26 @@ TEST_F(CSizes, OfASession) {
     EXPECT_EQ(tactus_client_close(client, nullptr), TACTUS_OK);
     return tactus_client_poll_event(client, event, error);
   };
-  for (const SizedCall& call :
-       std::vector<SizedCall>{{"server_options",
-                               48,
-                               Direction::option,
-                               initialised<tactus_server_options_init, tactus_server_options>(),
-                               taking<tactus_server_options>(serve),
-                               {56}},
-                              {"client_options",
-                               64,
-                               Direction::option,
-                               initialised<tactus_client_options_init, tactus_client_options>(),
-                               taking<tactus_client_options>(join),
-                               {80}},
-                              {"event", 24, Direction::answer, {}, taking<tactus_event>(leave)},
-                              {"session_status",
-                               232,
-                               Direction::answer,
-                               {},
-                               taking<tactus_session_status>([&](auto*s, auto*e) { return tactus_client_status(client, s, e); }),
-                               {256}}})
+  for (const SizedCall& call : std::vector<SizedCall>{
+           {"server_options",
+            48,
+            Direction::option,
+            initialised<tactus_server_options>(),
+            taking<tactus_server_options>(serve),
+            {56}},
+           {"client_options",
+            64,
+            Direction::option,
+            initialised<tactus_client_options>(),
+            taking<tactus_client_options>(join),
+            {80}},
+           {"event", 24, Direction::answer, {}, taking<tactus_event>(leave)},
+           {"session_status",
+            232,
+            Direction::answer,
+            {},
+            taking<tactus_session_status>([&](auto*s, auto*e) { return tactus_client_status(client, 0, s, e); }),
+            {256, 368}}})
     check_sizes(call);
   tactus_client_destroy(client);
 }

@@ -13,6 +13,14 @@
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus::c_test {
+
+template <>
+inline constexpr auto init<tactus_trace_coding> =
+    [](tactus_trace_coding* coding, std::size_t size) { return tactus_trace_init(TACTUS_TRACE_CODING, coding, size); };
+template <>
+inline constexpr auto init<tactus_errors_options> =
+    [](tactus_errors_options* options, std::size_t size) { return tactus_trace_init(TACTUS_ERRORS_OPTIONS, options, size); };
+
 namespace {
 
 using Trace = std::unique_ptr<tactus_trace, Destroy<tactus_trace_destroy>>;
@@ -42,7 +50,7 @@ Recording recording_with_sheet() {
 
 Trace open(const std::string& path) {
   tactus_trace* raw = nullptr;
-  EXPECT_EQ(tactus_trace_open(path.c_str(), &raw, nullptr), TACTUS_OK);
+  EXPECT_EQ(tactus_trace_open(path.c_str(), nullptr, 0, &raw, nullptr), TACTUS_OK);
   return Trace(raw);
 }
 
@@ -86,12 +94,9 @@ TEST_F(CTrace, ReportsWhatTheTraceHolds) {
   EXPECT_EQ(mesh.triangles, 2u);
   EXPECT_EQ(mesh.fixed, 1u);
   EXPECT_EQ(mesh.period, 3);
-  double rest[12];
-  std::uint32_t corners[6];
-  ASSERT_EQ(tactus_trace_get_rest(trace.get(), 0, rest, 12, nullptr), TACTUS_OK);
-  ASSERT_EQ(tactus_trace_get_triangles(trace.get(), 0, corners, 6, nullptr), TACTUS_OK);
-  EXPECT_EQ(rest[3], 0.1);
-  EXPECT_EQ(corners[5], 3u);
+  EXPECT_EQ(mesh.rest[3], 0.1);
+  EXPECT_EQ(mesh.rest[10], 0.1);
+  EXPECT_EQ(mesh.corners[5], 3u);
 }
 
 TEST_F(CTrace, ReturnsWhichForcesOfAUserItKnows) {
@@ -143,13 +148,15 @@ TEST_F(CTrace, ReadsEveryFrame) {
   }
   EXPECT_EQ(tactus_trace_next(trace.get(), &tick, objects, 2, users, 2, nullptr), TACTUS_NOTHING);
   EXPECT_EQ(tactus_trace_next(trace.get(), &tick, objects, 2, users, 2, nullptr), TACTUS_NOTHING);
-  EXPECT_EQ(tactus_trace_cut_short(trace.get()), 0);
+  auto end = sized<tactus_trace_info>();
+  ASSERT_EQ(tactus_trace_get(trace.get(), &end, nullptr), TACTUS_OK);
+  EXPECT_EQ(end.cut_short, 0u);
 }
 
 TEST_F(CTrace, BecomesASceneThatDeclaresBounds) {
   const Trace trace = open(file.path());
-  auto coding = filled<tactus_trace_coding_init, tactus_trace_coding>();
-  auto rigid = filled<tactus_rigid_bounds_init, tactus_rigid_bounds>();
+  auto coding = filled<tactus_trace_coding>();
+  auto rigid = filled<tactus_rigid_bounds>();
   rigid.visual_position = 0.001;
   coding.rigid = &rigid;
   coding.rigid_profile = TACTUS_PROFILE_THESIS;
@@ -168,7 +175,7 @@ TEST_F(CTrace, BecomesASceneThatDeclaresBounds) {
   EXPECT_EQ(scene->deformables.at(0).name, "sheet");
   coding.baselines = 256;
   EXPECT_REFUSED("R-API-4", tactus_trace_scene, trace.get(), &coding, nullptr, 0, &size);
-  coding = filled<tactus_trace_coding_init, tactus_trace_coding>();
+  coding = filled<tactus_trace_coding>();
   coding.rigid_profile = 2;
   EXPECT_REFUSED("R-API-4", tactus_trace_scene, trace.get(), &coding, nullptr, 0, &size);
   std::int64_t tick = 0;
@@ -179,7 +186,7 @@ TEST_F(CTrace, BecomesASceneThatDeclaresBounds) {
 /// As `tactus encode --tune clusters=N` does: found on the whole trace, which is then read from its front.
 TEST_F(CTrace, ClustersAreFoundOnIt) {
   const Trace trace = open(file.path());
-  auto coding = filled<tactus_trace_coding_init, tactus_trace_coding>();
+  auto coding = filled<tactus_trace_coding>();
   coding.clusters = 1;
   std::vector<std::uint8_t> bytes(1 << 12);
   std::size_t size = 0;
@@ -218,11 +225,10 @@ TEST_F(CTrace, ErrorsAreThoseOfTheLibrary) {
       const auto& [p, q] = pose;
       given[i] = {{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}};
     }
-    ASSERT_EQ(tactus_errors_add(raw, trace.get(), given, 2, nullptr), TACTUS_OK);
+    const tactus_shape shape{shown.data(), 4, 0, 0, 0, 0};
+    ASSERT_EQ(tactus_errors_add(raw, trace.get(), given, 2, &shape, 1, nullptr), TACTUS_OK);
     rigid.add(frame, poses);
-    const tactus_status added = tactus_errors_add_shape(raw, trace.get(), 0, shown.data(), 4, nullptr);
-    ASSERT_EQ(added, frame.meshes[0].updated ? TACTUS_OK : TACTUS_NOTHING);
-    if (added != TACTUS_OK) continue;
+    if (!frame.meshes[0].updated) continue;
     std::optional<SurfaceTouch> touch;
     if (frame.users[1].surface_contact) touch = SurfaceTouch{1, 400 * 2e-3, 400};
     sheet.add(frame.meshes[0].displacements, std::span(shown), touch);
@@ -230,7 +236,7 @@ TEST_F(CTrace, ErrorsAreThoseOfTheLibrary) {
   const ErrorSeries* series[] = {&rigid.position(), &rigid.rotation(), &rigid.force(), &rigid.perceived()};
   for (std::uint32_t i = 0; i < 4; ++i) {
     auto summary = sized<tactus_error_summary>();
-    ASSERT_EQ(tactus_errors_get(raw, i, &summary, nullptr), TACTUS_OK);
+    ASSERT_EQ(tactus_errors_get(raw, i, 9, &summary, nullptr), TACTUS_OK);
     EXPECT_EQ(summary.ticks, series[i]->ticks()) << i;
     EXPECT_EQ(summary.ticks_over, series[i]->ticks_over()) << i;
     EXPECT_EQ(summary.longest_run, series[i]->longest_run()) << i;
@@ -239,9 +245,9 @@ TEST_F(CTrace, ErrorsAreThoseOfTheLibrary) {
     EXPECT_EQ(summary.worst_ratio, i == TACTUS_ERROR_FORCE ? rigid.worst_haptic_ratio() : 0) << i;
   }
   EXPECT_GT(rigid.position().ticks_over(), 0u);
-  auto mesh = sized<tactus_mesh_summary>();
-  ASSERT_EQ(tactus_errors_get_mesh(raw, 0, &mesh, nullptr), TACTUS_OK);
-  EXPECT_EQ(mesh.frames, kFrames / 3);
+  auto mesh = sized<tactus_error_summary>();
+  ASSERT_EQ(tactus_errors_get(raw, TACTUS_ERROR_SHAPE, 0, &mesh, nullptr), TACTUS_OK);
+  EXPECT_EQ(mesh.ticks, kFrames / 3);
   EXPECT_EQ(mesh.vertices, 4 * kFrames / 3);
   EXPECT_EQ(mesh.violations, sheet.all().violations);
   EXPECT_EQ(mesh.max, sheet.all().max);
@@ -259,46 +265,45 @@ TEST_F(CTrace, Refuses) {
   auto user = sized<tactus_trace_user>();
   auto mesh = sized<tactus_trace_mesh>();
   auto summary = sized<tactus_error_summary>();
-  auto mesh_summary = sized<tactus_mesh_summary>();
   std::int64_t tick = 0;
-  double rest[12];
-  std::uint32_t corners[6];
+  float shown[12]{};
   tactus_shape shape;
   tactus_rigid_sample objects[2];
   tactus_pose poses[2]{};
-  EXPECT_REFUSED("R-API-12", tactus_trace_open, nullptr, &other);
-  EXPECT_REFUSED("R-API-12", tactus_trace_open, file.path().c_str(), nullptr);
-  EXPECT_REFUSED("R-TRC-1", tactus_trace_open, "/nowhere/at.mcap", &other);
-  EXPECT_EQ(other, nullptr);
+  EXPECT_REFUSED("R-API-12", tactus_trace_open, nullptr, nullptr, 0, &other);
+  EXPECT_REFUSED("R-API-12", tactus_trace_open, file.path().c_str(), nullptr, 0, nullptr);
+  EXPECT_REFUSED("R-API-12", tactus_trace_open, nullptr, nullptr, 5, &other);
+  EXPECT_REFUSED("R-TRC-1", tactus_trace_open, "/nowhere/at.mcap", nullptr, 0, &other);
+  const std::uint8_t noise[4] = {1, 2, 3, 4};
+  EXPECT_REFUSED("R-TRC-2", tactus_trace_open, nullptr, noise, sizeof noise, &other);
   EXPECT_REFUSED("R-API-12", tactus_trace_get, nullptr, &info);
   EXPECT_REFUSED("R-API-12", tactus_trace_get, trace.get(), nullptr);
   EXPECT_REFUSED("R-API-12", tactus_trace_get_object, trace.get(), 2, &object);
   EXPECT_REFUSED("R-API-12", tactus_trace_get_user, trace.get(), 2, &user);
   EXPECT_REFUSED("R-API-12", tactus_trace_get_mesh, trace.get(), 1, &mesh);
-  EXPECT_REFUSED("R-API-12", tactus_trace_get_rest, trace.get(), 0, nullptr, 12);
-  EXPECT_REFUSED("R-API-13", tactus_trace_get_rest, trace.get(), 0, rest, 11);
-  EXPECT_REFUSED("R-API-13", tactus_trace_get_triangles, trace.get(), 0, corners, 5);
   EXPECT_REFUSED("R-API-12", tactus_trace_shape, trace.get(), 0, &shape);  // before the first frame
   EXPECT_REFUSED("R-API-12", tactus_trace_next, trace.get(), &tick, objects, 1, nullptr, 0);
   EXPECT_REFUSED("R-API-12", tactus_trace_next, trace.get(), &tick, nullptr, 2, nullptr, 0);
   EXPECT_REFUSED("R-API-12", tactus_trace_next, nullptr, &tick, nullptr, 0, nullptr, 0);
-  auto options = filled<tactus_errors_options_init, tactus_errors_options>();
+  auto options = filled<tactus_errors_options>();
   options.position_exp = 31;
   EXPECT_REFUSED("R-API-4", tactus_errors_create, trace.get(), &options, &errors);
   EXPECT_REFUSED("R-API-12", tactus_errors_create, nullptr, nullptr, &errors);
   ASSERT_EQ(tactus_errors_create(trace.get(), nullptr, &errors, nullptr), TACTUS_OK);
   const Errors kept(errors);
-  EXPECT_REFUSED("R-API-12", tactus_errors_add, errors, trace.get(), poses, 2);  // before the first frame
+  EXPECT_REFUSED("R-API-12", tactus_errors_add, errors, trace.get(), poses, 2, nullptr, 0);  // before the first frame
   ASSERT_TRUE(go_on(trace, tick));
-  EXPECT_REFUSED("R-API-5", tactus_errors_add, errors, trace.get(), poses, 1);
-  EXPECT_REFUSED("R-API-12", tactus_errors_add, errors, trace.get(), nullptr, 2);
-  EXPECT_REFUSED("R-API-12", tactus_errors_add_shape, errors, trace.get(), 1, reinterpret_cast<const float*>(rest), 4);
-  EXPECT_REFUSED("R-API-5", tactus_errors_add_shape, errors, trace.get(), 0, reinterpret_cast<const float*>(rest), 3);
-  EXPECT_REFUSED("R-API-12", tactus_errors_get, errors, 4, &summary);
-  EXPECT_REFUSED("R-API-12", tactus_errors_get_mesh, errors, 1, &mesh_summary);
+  EXPECT_REFUSED("R-API-5", tactus_errors_add, errors, trace.get(), poses, 1, nullptr, 0);
+  EXPECT_REFUSED("R-API-12", tactus_errors_add, errors, trace.get(), nullptr, 2, nullptr, 0);
+  shape = {shown, 3, 0, 0, 0, 0};
+  EXPECT_REFUSED("R-API-12", tactus_errors_add, errors, trace.get(), nullptr, 0, nullptr, 1);
+  EXPECT_REFUSED("R-API-5", tactus_errors_add, errors, trace.get(), nullptr, 0, &shape, 1);
+  EXPECT_REFUSED("R-API-5", tactus_errors_add, errors, trace.get(), nullptr, 0, &shape, 0);
+  EXPECT_EQ(tactus_errors_add(errors, trace.get(), nullptr, 0, nullptr, 0, nullptr), TACTUS_OK) << "nothing is shown";
+  EXPECT_REFUSED("R-API-12", tactus_errors_get, errors, 5, 0, &summary);
+  EXPECT_REFUSED("R-API-12", tactus_errors_get, errors, TACTUS_ERROR_SHAPE, 1, &summary);
   tactus_trace_destroy(nullptr);
   tactus_errors_destroy(nullptr);
-  EXPECT_EQ(tactus_trace_cut_short(nullptr), 0);
 }
 
 #if SIZE_MAX == UINT64_MAX
@@ -319,9 +324,12 @@ TEST_F(CTrace, StructsMayBeOfAnotherVersion) {
   ASSERT_EQ(tactus_errors_create(trace.get(), nullptr, &raw, nullptr), TACTUS_OK);
   const Errors errors(raw);
   for (const SizedCall& call : std::vector<SizedCall>{
-           {"trace_info", 40, Direction::answer, {}, taking<tactus_trace_info>([&](auto*i, auto*e) {
-              return tactus_trace_get(trace.get(), i, e);
-            })},
+           {"trace_info",
+            40,
+            Direction::answer,
+            {},
+            taking<tactus_trace_info>([&](auto*i, auto*e) { return tactus_trace_get(trace.get(), i, e); }),
+            {48}},
            {"trace_object", 16, Direction::answer, {}, taking<tactus_trace_object>([&](auto*i, auto*e) {
               return tactus_trace_get_object(trace.get(), 0, i, e);
             })},
@@ -331,23 +339,25 @@ TEST_F(CTrace, StructsMayBeOfAnotherVersion) {
             {},
             taking<tactus_trace_user>([&](auto*i, auto*e) { return tactus_trace_get_user(trace.get(), 0, i, e); }),
             {24}},
-           {"trace_mesh", 32, Direction::answer, {}, taking<tactus_trace_mesh>([&](auto*i, auto*e) {
-              return tactus_trace_get_mesh(trace.get(), 0, i, e);
-            })},
+           {"trace_mesh",
+            32,
+            Direction::answer,
+            {},
+            taking<tactus_trace_mesh>([&](auto*i, auto*e) { return tactus_trace_get_mesh(trace.get(), 0, i, e); }),
+            {48}},
            {"trace_coding",
             40,
             Direction::option,
-            initialised<tactus_trace_coding_init, tactus_trace_coding>(),
+            initialised<tactus_trace_coding>(),
             taking<tactus_trace_coding>(declare),
             {48}},
-           {"errors_options", 32, Direction::option, initialised<tactus_errors_options_init, tactus_errors_options>(),
-            taking<tactus_errors_options>(judge)},
-           {"error_summary", 56, Direction::answer, {}, taking<tactus_error_summary>([&](auto*s, auto*e) {
-              return tactus_errors_get(raw, 0, s, e);
-            })},
-           {"mesh_summary", 56, Direction::answer, {}, taking<tactus_mesh_summary>([&](auto*s, auto*e) {
-              return tactus_errors_get_mesh(raw, 0, s, e);
-            })}})
+           {"errors_options", 32, Direction::option, initialised<tactus_errors_options>(), taking<tactus_errors_options>(judge)},
+           {"error_summary",
+            56,
+            Direction::answer,
+            {},
+            taking<tactus_error_summary>([&](auto*s, auto*e) { return tactus_errors_get(raw, 0, 0, s, e); }),
+            {72}}})
     check_sizes(call);
 }
 #endif
@@ -362,7 +372,7 @@ TEST_F(CTrace, ACutFileIsReadAsFarAsItGoes) {
     const auto expected = TraceReader::open(piece.path());
     tactus_trace* raw = nullptr;
     tactus_error error{};
-    const tactus_status status = tactus_trace_open(piece.path().c_str(), &raw, &error);
+    const tactus_status status = tactus_trace_open(piece.path().c_str(), nullptr, 0, &raw, &error);
     const Trace trace(raw);
     if (!expected) {
       EXPECT_STREQ(error.rule, expected.error().rule) << size;
@@ -373,7 +383,9 @@ TEST_F(CTrace, ACutFileIsReadAsFarAsItGoes) {
     std::int64_t tick = 0;
     while (go_on(trace, tick)) {
     }
-    cut += static_cast<std::size_t>(tactus_trace_cut_short(raw));
+    auto info = sized<tactus_trace_info>();
+    ASSERT_EQ(tactus_trace_get(raw, &info, nullptr), TACTUS_OK);
+    cut += info.cut_short;
   }
   EXPECT_GT(opened, 0u);
   EXPECT_GT(cut, 0u);

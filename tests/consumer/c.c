@@ -5,7 +5,7 @@
 #include <tactus_session.h>
 
 static int failed(const char* call, const tactus_error* error) {
-  fprintf(stderr, "%s: %s (%s). %s\n", call, tactus_error_text(error), error->rule, tactus_error_remedy(error));
+  fprintf(stderr, "%s: %s (%s). %s\n", call, error->text, error->rule, error->remedy);
   return 1;
 }
 
@@ -18,22 +18,22 @@ int main(void) {
   size_t sent = 0;
   if (tactus_version() != TACTUS_VERSION) return fprintf(stderr, "header and library differ\n"), 1;
   if (tactus_scene_builder_create(NULL, &builder, &error)) return failed("create", &error);
-  if (tactus_scene_builder_rigid(builder, "cube", NULL, TACTUS_DOF_ALL, &error)) return failed("rigid", &error);
-  if (tactus_scene_builder_build(builder, &scene, &error)) return failed(tactus_scene_builder_culprit(builder), &error);
+  if (tactus_scene_builder_rigid(builder, "cube", NULL, &error)) return failed("rigid", &error);
+  if (tactus_scene_builder_build(builder, &scene, &error)) return failed(error.object, &error);
   if (tactus_sender_create(scene, NULL, &sender, &error)) return failed("sender", &error);
   if (tactus_receiver_create(scene, NULL, &receiver, &error)) return failed("receiver", &error);
   for (int64_t tick = 0; tick < 200; ++tick) {
     tactus_rigid_sample cube = {.pose = {{1e-3 * (double)tick, 0, 0}, {1, 0, 0, 0}}, .velocity = {1, 0, 0}};
     tactus_truth truth = {.size = sizeof truth, .objects = &cube, .object_count = 1};
+    tactus_encoded encoded = {.size = sizeof encoded};
     tactus_pose shown;
-    uint8_t packet[2048];
-    size_t packets = 0, size = 0;
-    if (tactus_sender_encode(sender, tick, &truth, &packets, &error)) return failed("encode", &error);
-    for (size_t i = 0; i < packets; ++i, ++sent) {
-      if (tactus_sender_packet(sender, i, NULL, packet, sizeof packet, &size, &error)) return failed("packet", &error);
-      if (tactus_receiver_push(receiver, packet, size, TACTUS_NO_CLOCK, NULL, &error)) return failed("push", &error);
+    if (tactus_sender_encode(sender, tick, &truth, &encoded, &error)) return failed("encode", &error);
+    for (size_t i = 0; i < encoded.packet_count; ++i, ++sent) {
+      const tactus_packet* packet = &encoded.packets[i];
+      if (tactus_receiver_push(receiver, packet->data, packet->bytes, TACTUS_NO_CLOCK, NULL, &error))
+        return failed("push", &error);
     }
-    if (tactus_receiver_poses(receiver, tick, 0, 1, &shown, &error)) return failed("poses", &error);
+    if (tactus_receiver_poses(receiver, tick, 0, 1, &shown, NULL, &error)) return failed("poses", &error);
     if (shown.position[0] < cube.pose.position[0] - 0.006 || shown.position[0] > cube.pose.position[0] + 0.006) return 1;
   }
   printf("%zu packets in 200 ticks\n", sent);

@@ -23,13 +23,12 @@ auto declare() {
 
 /// The client's replica is where the server says that things are.
 const char* look(tactus::Receiver& receiver, std::int64_t tick, const tactus::Truth& truth) {
-  const unsigned grid = receiver.scene()->grid.position;
-  const tactus::Pose cube = tactus::to_pose(receiver.replica().pose(0, tick), grid);
+  const tactus::Pose cube = receiver.pose(0, tick);
   if (tactus::norm(cube.position - truth.objects[0].pose.position) > tactus::RigidTriggers{}.visual_position)
     return "the client sees the cube elsewhere";
-  const tactus::Vec3 corner = tactus::to_metres(receiver.replica().displacements(0, tick)[0], grid);
-  const auto u = truth.deformables[0].displacements;
-  if (tactus::norm(corner - tactus::Vec3{u[0], u[1], u[2]}) > tactus::DeformableThresholds{}.visual)
+  const auto shown = receiver.displacements(0, tick), u = truth.deformables[0].displacements;
+  if (tactus::norm(tactus::Vec3{shown[0], shown[1], shown[2]} - tactus::Vec3{u[0], u[1], u[2]}) >
+      tactus::DeformableThresholds{}.visual)
     return "the client sees the touched corner elsewhere";
   return nullptr;
 }

@@ -24,11 +24,16 @@ void look(const tactus_scene* scene) {
     std::vector<float> rest(std::size_t{3} * mesh.vertices);
     std::vector<std::uint32_t> corners(std::size_t{3} * mesh.triangles);
     std::vector<double> stiffness(mesh.vertices);
-    require(call(tactus_scene_get_rest, scene, i, rest.data(), rest.size()));
-    require(!call(tactus_scene_get_rest, scene, i, rest.data(), rest.size() - 1));
-    require(call(tactus_scene_get_triangles, scene, i, corners.data(), corners.size()));
-    (void)call(tactus_scene_get_stiffness, scene, i, stiffness.data(), stiffness.size());
-    (void)call(tactus_scene_get_deformable_bounds, scene, i, &bounds);
+    std::vector<std::uint8_t> clusters(mesh.vertices);
+    auto arrays = sized<tactus_mesh_arrays>();
+    arrays.rest = rest.data(), arrays.vertices = mesh.vertices;
+    arrays.corners = corners.data(), arrays.triangles = mesh.triangles;
+    if (mesh.has_stiffness) arrays.stiffness = stiffness.data();
+    if (mesh.clusters) arrays.clusters = clusters.data();
+    require(call(tactus_scene_get_mesh, scene, i, &arrays));
+    --arrays.vertices;
+    require(!call(tactus_scene_get_mesh, scene, i, &arrays));
+    (void)call(tactus_scene_get_bounds, scene, nullptr, i, &bounds, nullptr);
   }
 }
 
@@ -39,7 +44,7 @@ void show(tactus_receiver* receiver, std::int64_t tick) {
   std::vector<tactus_pose> poses(info.rigid);
   std::vector<tactus_update> updates(info.rigid);
   std::size_t count = 0;
-  require(call(tactus_receiver_poses, receiver, tick, 0u, poses.size(), poses.data()));
+  require(call(tactus_receiver_poses, receiver, tick, 0u, poses.size(), poses.data(), nullptr));
   require(call(tactus_receiver_updates, receiver, updates.data(), updates.size(), &count) && count <= updates.size());
   std::vector<double> loads(3 * (2 + std::size_t{info.load_users}));
   if (info.rigid > 0) (void)call(tactus_receiver_loads, receiver, 0u, tick, loads.data(), loads.size());
@@ -53,17 +58,17 @@ void show(tactus_receiver* receiver, std::int64_t tick) {
 
 std::uint64_t hash_of(const tactus_receiver* receiver, std::uint32_t substream) {
   std::uint64_t hash = 0;
-  require(call(tactus_receiver_state_hash, receiver, substream, &hash));
+  require(call(tactus_receiver_hash, receiver, substream, &hash, std::int64_t{0}, nullptr));
   return hash;
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  auto limits = filled<tactus_limits_init, tactus_limits>();
+  auto limits = filled<tactus_limits>();
   limits.objects = 256;
   limits.vertices = 2048;  // decoding takes vertices x packets
-  auto options = filled<tactus_receiver_options_init, tactus_receiver_options>();
+  auto options = filled<tactus_receiver_options>();
   options.limits = &limits;
   const std::vector<std::uint8_t> file(data, data + size);
   tactus_player* opened = nullptr;

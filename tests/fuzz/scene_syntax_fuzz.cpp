@@ -22,7 +22,7 @@ void check_ends(const SharedScene& scene) {
     return;
   }
   for (std::size_t i = 0; i < scene->deformables.size(); ++i)
-    require(receiver->displacements(i).size() == scene->deformables[i].rest.size());
+    require(receiver->decoded_displacements(i).size() == scene->deformables[i].rest.size());
   const auto sender = Sender::create(scene);
   require(sender || sender.error().code == Errc::invalid_argument);  // thresholds finer than the grid
   for (std::size_t i = 0; sender && i <= scene->deformables.size() + (scene->loads ? 1 : 0); ++i)

@@ -25,7 +25,7 @@ inline const std::array<SharedScene, 3> kScenes = [] {
   SceneBuilder plain(1000), layered(60), driven(1000);
   plain.rigid("a").rigid("b").baselines(64);
   layered.rigid("a").deformable("m", mesh, {.layered = true}).deformable("n", mesh).baselines(4);
-  driven.rigid("a").driven({0.1, {1e-5, 1e-5, 1e-5}, 500, 50, 0.5, 1}).baselines(64);
+  driven.rigid("a", {}, {.driven = DrivenPhysics{0.1, {1e-5, 1e-5, 1e-5}, 500, 50, 0.5, 1}}).baselines(64);
   return std::array{plain.build().value(), layered.build().value(), driven.build().value()};
 }();
 

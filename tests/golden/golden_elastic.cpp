@@ -68,8 +68,7 @@ SharedScene scene_of(double friction, const Vec3& gravity, ElasticBody::Method m
   body.method = method;
   body.sub_steps = sub_steps;
   return SceneBuilder()
-      .deformable("block", std::move(mesh), {.frame_period = 8})
-      .elastic(std::move(physics))
+      .deformable("block", std::move(mesh), {.frame_period = 8, .elastic = std::move(physics)})
       .baselines(64)
       .build()
       .value();

@@ -82,8 +82,8 @@ bool run(const Case& c) {
   SceneBuilder builder;
   std::vector<Body> bodies;
   for (std::size_t i = 0; i < c.dofs.size(); ++i) {
-    builder.rigid("body " + std::to_string(i), {}, c.dofs[i]);
-    if (c.is_driven) builder.driven(kDriven);
+    builder.rigid("body " + std::to_string(i), {},
+                  {.dof = c.dofs[i], .driven = c.is_driven ? std::optional(kDriven) : std::nullopt});
     bodies.emplace_back(1000 + i, c.dofs[i]);
   }
   builder.rigid_profile(c.profile);

@@ -176,7 +176,7 @@ TEST_P(AcknowledgedShapes, NoLossStopsDeformableObjects) {
     };
     testing::BoundWatch watch(*scene, thresholds);
     const auto look = [&](Receiver& receiver, const DecodedPacket& packet) {
-      watch.look(frames[static_cast<std::size_t>(packet.tick)], receiver.displacements(0));
+      watch.look(frames[static_cast<std::size_t>(packet.tick)], receiver.decoded_displacements(0));
     };
     const Delivered out = deliver(scene, acknowledged(thresholds), channel, 800, truth, look);
     EXPECT_EQ(out.refused, 0u);

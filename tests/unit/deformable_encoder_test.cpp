@@ -133,7 +133,7 @@ TEST(DeformableThesis, ListsWhatReachesAThreshold) {
   set_vertex(frame.displacements, 1, {0, 0, 1e-4 - 2 * unit});  // and below
   set_vertex(frame.displacements, 24, {0, 1e-3 + unit, 0});     // three rings away from triangle 0 there is no vertex 24
   ends.send(0, frame);
-  const auto shown = ends.receiver.displacements(0);
+  const auto shown = ends.receiver.decoded_displacements(0);
   EXPECT_NE(shown[0], Vec3i{});
   EXPECT_EQ(shown[1], Vec3i{});
   EXPECT_NE(shown[24], Vec3i{});
@@ -146,7 +146,7 @@ TEST(DeformableExtremes, OneVertexWithoutTriangle) {
     for (std::int64_t k = 0; k < 50; ++k) {
       const SheetFrame frame{moved_by(1, {1e-3 * static_cast<double>(k), 0, 0}), {}};
       ends.send(k, frame);
-      EXPECT_LE(norm(to_metres(ends.receiver.displacements(0)[0], 22) - vertex_of(frame.displacements, 0)),
+      EXPECT_LE(norm(to_metres(ends.receiver.decoded_displacements(0)[0], 22) - vertex_of(frame.displacements, 0)),
                 DeformableThresholds{}.visual);
     }
     EXPECT_EQ(ends.packets, 49U);
@@ -178,7 +178,7 @@ TEST(DeformableExtremes, RangeLimitsAndJumps) {
       SheetFrame frame{moved_by(16, {far, -far, far}), {}};
       set_vertex(frame.displacements, 5, {});
       ends.send(k, frame);
-      watch.look(frame, ends.receiver.displacements(0));
+      watch.look(frame, ends.receiver.decoded_displacements(0));
     }
     EXPECT_EQ(ends.packets, 40U);
     if (profile == DeformableProfile::main) {
@@ -218,7 +218,7 @@ TEST(DeformableExtremes, AMillionVertices) {
     if (HasFatalFailure()) return;
     const double unit = std::ldexp(1.0, -22);
     for (std::size_t v = 0; v < mesh.vertices.size(); v += 997)
-      EXPECT_LE(norm(to_metres(ends.receiver.displacements(0)[v], 22) - vertex_of(frame.displacements, v)), unit);
+      EXPECT_LE(norm(to_metres(ends.receiver.decoded_displacements(0)[v], 22) - vertex_of(frame.displacements, v)), unit);
   }
   EXPECT_EQ(ends.packets, 2U);
 }

@@ -205,8 +205,8 @@ inline SharedScene scene_of_every_kind(std::uint32_t squares, std::uint8_t span 
   const TriMesh mesh = sheet(squares, squares);
   return SceneBuilder(60)
       .rigid("cube")
-      .rigid("wall", {}, Dof::none)
-      .rigid("slider", {}, Dof::x)
+      .rigid("wall", {}, {.dof = Dof::none})
+      .rigid("slider", {}, {.dof = Dof::x})
       .deformable("layered", mesh, {.layered = true})
       .deformable("waves", mesh, {.basis = wave_basis(mesh, squares, 3)})
       .deformable("thesis", mesh, {.profile = DeformableProfile::thesis, .models_kept = true})

@@ -319,7 +319,7 @@ TEST(DeformableLayers, ThesisListsWhatIsRenderedInAPacketOfItsOwn) {
       ends.deliver(packet, k);
       if (packet.layer != Layer::haptic || packet.key) continue;
       rings.triangles_around(frame.touch->triangle, scene->deformables[0].rings);
-      const auto shown = ends.receiver.displacements(0);
+      const auto shown = ends.receiver.decoded_displacements(0);
       for (std::uint32_t v = 0; v < before.size(); ++v) {
         if (std::ranges::count(rings.vertices(), v) > 0) continue;
         ASSERT_EQ(shown[v], before[v]);
@@ -327,7 +327,7 @@ TEST(DeformableLayers, ThesisListsWhatIsRenderedInAPacketOfItsOwn) {
     }
     ends.agree(k);
     if (HasFatalFailure()) return;
-    const auto shown = ends.receiver.displacements(0);
+    const auto shown = ends.receiver.decoded_displacements(0);
     before.assign(shown.begin(), shown.end());
     watch.look(frame, shown);
   }
@@ -348,7 +348,9 @@ TEST(DeformableLayers, ThesisKeyPacketsListAVertexAtLeast) {
       ends.send(k, frame);
       if (HasFatalFailure()) return;
       for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-        ASSERT_LT(norm(to_metres(ends.receiver.displacements(0)[v], 22) - testing::vertex_of(frame.displacements, v)), 3e-4) << k;
+        ASSERT_LT(norm(to_metres(ends.receiver.decoded_displacements(0)[v], 22) - testing::vertex_of(frame.displacements, v)),
+                  3e-4)
+            << k;
     }
   }
 }

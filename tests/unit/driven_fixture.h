@@ -26,7 +26,7 @@ inline DrivenPhysics cube_physics() {
 
 inline SharedScene driven_scene(std::uint8_t dof = Dof::all, const Vec3& gravity = {0, 0, -kWeight}) {
   SceneBuilder builder;
-  builder.rigid("cube", {}, dof).driven(cube_physics()).motion({gravity, kGround}).baselines(64);
+  builder.rigid("cube", {}, {.dof = dof, .driven = cube_physics()}).motion({gravity, kGround}).baselines(64);
   return builder.build().value();
 }
 

@@ -41,7 +41,8 @@ inline ElasticPhysics slab_physics() {
 inline SharedScene elastic_scene(ElasticPhysics physics = slab_physics(), std::uint32_t ticks = kFrame) {
   SceneBuilder builder;
   const auto frame = static_cast<double>(ticks);
-  builder.deformable("slab", sim::surface(slab_mesh()).mesh, {.frame_period = frame}).elastic(std::move(physics)).baselines(64);
+  builder.deformable("slab", sim::surface(slab_mesh()).mesh, {.frame_period = frame, .elastic = std::move(physics)})
+      .baselines(64);
   return builder.build().value();
 }
 

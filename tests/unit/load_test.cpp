@@ -46,7 +46,7 @@ class Pushed {
 SharedScene make_scene(std::uint8_t span = 1) {
   return SceneBuilder()
       .rigid("a")
-      .rigid("wall", {}, Dof::none)
+      .rigid("wall", {}, {.dof = Dof::none})
       .rigid("b")
       .loads({.force_exp = 10, .users = kUsers})
       .baselines(span)
@@ -196,7 +196,7 @@ TEST(Loads, AreHeldOrRefusedIfTheyDoNotSuitTheScene) {
   for (const LoadThresholds bad : {LoadThresholds{0, 1}, LoadThresholds{0.1, -1}, LoadThresholds{NAN, 1}})
     EXPECT_STREQ(Sender::create(scene, {.load = bad}).error().rule, "R-API-4");
   EXPECT_STREQ(SceneBuilder().rigid("a").loads({.force_exp = 21}).build().error().error.rule, "R-STR-19");
-  EXPECT_STREQ(SceneBuilder().rigid("a", {}, Dof::none).loads({}).build().error().error.rule, "R-STR-19");
+  EXPECT_STREQ(SceneBuilder().rigid("a", {}, {.dof = Dof::none}).loads({}).build().error().error.rule, "R-STR-19");
 }
 
 TEST(Loads, ScaleWithTheOtherBounds) {

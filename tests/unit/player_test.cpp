@@ -18,14 +18,12 @@ Bytes bytes_of(const std::ostringstream& out) {
   return {text.begin(), text.end()};
 }
 
-double shown_x(Player& player, std::int64_t tick) {
-  return to_pose(player.replica().pose(0, tick), player.scene().grid.position).position.x;
-}
+double shown_x(Player& player, std::int64_t tick) { return player.pose(0, tick).position.x; }
 
 /// Stream of a cube that jumps 1 m at tick 10 and again at 20; `record_offset` is added to the ticks of the file's records.
 Bytes jumping_stream(std::int64_t record_offset = 0) {
   const SharedScene scene =
-      SceneBuilder().rigid("cube").rigid("table", {}, Dof::none).rigid_profile(RigidProfile::thesis).build().value();
+      SceneBuilder().rigid("cube").rigid("table", {}, {.dof = Dof::none}).rigid_profile(RigidProfile::thesis).build().value();
   auto sender = Sender::create(scene, {.triggers = {.heartbeat = 0, .haptic = HapticRule::off}, .deformable = {}, .policy = {}});
   std::ostringstream out;
   auto writer = StreamFileWriter::create(out, *scene).value();

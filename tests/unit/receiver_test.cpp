@@ -222,6 +222,30 @@ TEST(Receiver, PositionsCountTheSubstreamsNumber) {
 }
 
 /// With a clock an update is shown from when it came, without one from its tick.
+/// In metres what the replica shows in integers.
+TEST(Receiver, ShowsPosesAndShapesInMetres) {
+  const SharedScene scene = testing::scene_of_every_kind(kSquares);
+  auto receiver = Receiver::create(scene).value();
+  for (const Sent& packet : record(scene, 20)) ASSERT_TRUE(receiver.push(packet.bytes));
+  const unsigned grid = scene->grid.position;
+  for (std::uint32_t i = 0; i < scene->objects.size(); ++i) {
+    EXPECT_EQ(scene->find(scene->objects[i].name), i);
+    const Pose exact = to_pose(receiver.replica().pose(i, 25), grid), shown = receiver.pose(i, 25);
+    EXPECT_EQ(norm(shown.position - exact.position), 0);
+    EXPECT_EQ(angle_between(shown.rotation, exact.rotation), 0);
+  }
+  for (std::uint32_t i = 0; i < scene->deformables.size(); ++i) {
+    EXPECT_EQ(scene->find(scene->deformables[i].name), i);
+    const auto of = receiver.replica().displacements(i, 25);
+    const std::vector<Vec3i> exact(of.begin(), of.end());
+    const auto shown = receiver.displacements(i, 25);
+    ASSERT_EQ(shown.size(), 3 * exact.size());
+    for (std::size_t v = 0; v < shown.size(); ++v)
+      EXPECT_EQ(shown[v], static_cast<float>(std::ldexp(exact[v / 3][v % 3], -static_cast<int>(grid)))) << i << ", " << v;
+  }
+  EXPECT_EQ(scene->find("nothing of this name"), std::nullopt);
+}
+
 TEST(Receiver, ArrivalIsWhenAPacketCame) {
   const SharedScene scene = testing::scene_of(1);
   auto sender = Sender::create(scene, {.triggers = {.reduction = Reduction::none}, .deformable = {}, .policy = {}}).value();

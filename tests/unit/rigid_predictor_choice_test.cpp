@@ -24,7 +24,7 @@ constexpr double kGravity = 9.81, kFriction = 0.25;
 constexpr PermittedError kPermitted{0.001, 0.02};
 
 SharedScene scene_with(const MotionPhysics& physics, std::uint8_t dof = Dof::all) {
-  return SceneBuilder().rigid("o", {}, dof).motion(physics).build().value();
+  return SceneBuilder().rigid("o", {}, {.dof = dof}).motion(physics).build().value();
 }
 
 /// Thrown, then sliding to rest on a floor, then thrown anew.
@@ -177,7 +177,7 @@ TEST(PredictorChoice, TossesTakeAFractionOfThePacketsInsideTheSameBounds) {
 
 /// A locked axis would run away for good.
 TEST(PredictorChoice, AnObjectOnARailStaysOnIt) {
-  const SharedScene scene = SceneBuilder().rigid("o", {}, Dof::x).motion({{0, 0, -kGravity}, kFriction}).build().value();
+  const SharedScene scene = SceneBuilder().rigid("o", {}, {.dof = Dof::x}).motion({{0, 0, -kGravity}, kFriction}).build().value();
   auto sender = Sender::create(scene).value();
   auto receiver = Receiver::create(scene).value();
   for (std::int64_t tick = 0; tick < 3000; ++tick) {
@@ -244,7 +244,7 @@ TEST(DrivenChoice, TheDragExplainsTheMotion) {
 TEST(DrivenChoice, ObjectsThatTheDeviceMovesInTurnsAreSignalledAlike) {
   constexpr std::size_t kCubes = 3;
   SceneBuilder builder;
-  for (std::size_t i = 0; i < kCubes; ++i) builder.rigid("cube" + std::to_string(i), {}).driven(testing::cube_physics());
+  for (std::size_t i = 0; i < kCubes; ++i) builder.rigid("cube" + std::to_string(i), {}, {.driven = testing::cube_physics()});
   const SharedScene scene = builder.motion({{0, 0, -testing::kWeight}, testing::kGround}).baselines(64).build().value();
   DevicePath path(device_scene(*scene).value());
   path.shift(0, 0);

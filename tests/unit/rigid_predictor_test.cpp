@@ -35,7 +35,7 @@ using testing::path_along;
 constexpr double kGravity = 9.81, kFriction = 0.25, kDeceleration = kGravity * kFriction;
 
 SharedScene with_motion(std::uint8_t dof = Dof::all) {
-  return SceneBuilder().rigid("o", {}, dof).motion({{0, 0, -kGravity}, kFriction}).build().value();
+  return SceneBuilder().rigid("o", {}, {.dof = dof}).motion({{0, 0, -kGravity}, kFriction}).build().value();
 }
 
 RigidState state_of(const Scene& scene, Predictor predictor, const RigidSample& sample, std::int64_t tick = 0) {

@@ -27,7 +27,8 @@ constexpr std::size_t kObjects = 12;
 SharedScene many(bool is_smoothed, bool has_interest = false) {
   SceneBuilder builder(1000);
   if (has_interest) builder.interest(0.05, 0.3);
-  for (std::size_t i = 0; i < kObjects; ++i) builder.rigid("body " + std::to_string(i), {}, i == 3 ? Dof::none : Dof::all);
+  for (std::size_t i = 0; i < kObjects; ++i)
+    builder.rigid("body " + std::to_string(i), {}, {.dof = i == 3 ? Dof::none : Dof::all});
   builder.rigid_profile(is_smoothed ? RigidProfile::main : RigidProfile::thesis);
   return builder.motion({{0, 0, -9.81}, 2}).baselines(64).build().value();
 }

@@ -61,7 +61,7 @@ TEST(ElasticSyntax, WithoutABodyNoByteIsThere) {
 TEST(ElasticSyntax, AnObjectBesideItNeedsNone) {
   const auto surface = sim::surface(testing::slab_mesh()).mesh;
   SceneBuilder builder;
-  builder.deformable("plain", surface).deformable("slab", surface, {.frame_period = 5}).elastic(slab_physics());
+  builder.deformable("plain", surface).deformable("slab", surface, {.frame_period = 5, .elastic = slab_physics()});
   const auto scene = builder.build();
   ASSERT_TRUE(scene) << scene.error().object;
   const auto parsed = parse_scene(write_scene(**scene).value());

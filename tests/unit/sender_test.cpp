@@ -188,7 +188,7 @@ TEST(Sender, ABoundScaleIsAtLeastOne) {
 }
 
 TEST(Sender, ASceneWithoutMotionNeedsNoSamples) {
-  const SharedScene still = SceneBuilder().rigid("wall", {}, Dof::none).build().value();
+  const SharedScene still = SceneBuilder().rigid("wall", {}, {.dof = Dof::none}).build().value();
   auto sender = Sender::create(still).value();
   const RigidSample sample;
   sender.request_key();

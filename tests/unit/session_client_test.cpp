@@ -51,7 +51,7 @@ struct Swing {
     EXPECT_GE(shown, last_shown);
     EXPECT_LE(shown, world.tick);
     last_shown = shown;
-    const Pose pose = to_pose(receiver->replica().pose(0, shown), scene->grid.position);
+    const Pose pose = client.pose(0, shown);
     ++judged;
     if (norm(pose.position - pendulum(shown).pose.position) > 0.001) ++over;
   }

@@ -356,7 +356,7 @@ TEST(Exchange, EachSixtyFourthPacketIsHashed) {
 /// A client's end for single packets of one object.
 struct Alone {
   explicit Alone(std::uint8_t dof = Dof::all) {
-    const SharedScene scene = SceneBuilder(1000).rigid("object", {}, dof).baselines(64).build().value();
+    const SharedScene scene = SceneBuilder(1000).rigid("object", {}, {.dof = dof}).baselines(64).build().value();
     client.receive_with(Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}}).value());
   }
   Exchange::Heard hear(std::uint64_t number, const Bytes& packet) {

@@ -41,17 +41,15 @@ class Error(Exception):
 
     def __init__(self, error: Any, subject: str = "", words: str = "", detail: str = "") -> None:
         self._of = (error.status, error.rule, error.bit_offset, subject, words, detail)
-        library = core()
-        by_reference = ctypes.byref(error)
-        self.name: str = library.tactus_status_name(error.status).decode()
+        self.name: str = error.name.decode()
         self.code: int = error.status
         self.rule: str = (error.rule or b"").decode()
         self.bit_offset: int = error.bit_offset
-        self.remedy: str = _REMEDIES.get(self.rule) or library.tactus_error_remedy(by_reference).decode()
-        self.advice: str = ("none", "drop", "request_key", "close")[library.tactus_error_advice(by_reference)]
+        self.remedy: str = _REMEDIES.get(self.rule) or error.remedy.decode()
+        self.advice: str = ("none", "drop", "request_key", "close")[error.advice]
         self.subject, self.words, self.detail = subject, words, detail
         position = f" at byte {self.bit_offset // 8}" if self.bit_offset else ""
-        text = library.tactus_error_text(by_reference).decode()
+        text = error.text.decode()
         subject = f"{subject}: " if subject else ""
         figures = f": {detail}" if detail else ""
         super().__init__(words or f"{subject}{text}{position} ({self.name}, {self.rule}){figures}. {self.remedy}".rstrip())
@@ -61,16 +59,21 @@ class Error(Exception):
 
 
 def _error_of(status: int, rule: bytes | None, bit_offset: int, subject: str, words: str, detail: str) -> Error:
-    error = _abi.tactus_error()
-    error.status, error.rule, error.bit_offset = status, rule, bit_offset
+    error = described(status, rule)
+    error.bit_offset = bit_offset
     return Error(error, subject, words, detail)
+
+
+def described(status: int, rule: bytes | None) -> Any:
+    """The error of one who breaks a rule, with its texts."""
+    error = _abi.tactus_error()
+    core().tactus_describe(status, rule, error)
+    return error
 
 
 def refusal(rule: str, subject: str, name: str = "TACTUS_INVALID_ARGUMENT") -> Error:
     """An error that Python finds."""
-    error = _abi.tactus_error()
-    error.status, error.rule = getattr(_abi, name), rule.encode()
-    return refusal_for(error, subject)
+    return refusal_for(described(getattr(_abi, name), rule.encode()), subject)
 
 
 def refusal_for(error: Any, finding: str) -> Error:
@@ -159,16 +162,17 @@ def traces() -> _Library:
     return _loaded["traces"]
 
 
-def call(function: Any, *arguments: Any, subject: str = "", words: Any = None) -> bool:
+def call(function: Any, *arguments: Any, subject: str = "", says_all: bool = False) -> bool:
     """Call a function whose last argument is the error. True: done; False: nothing is there.   raises  Error
-    words: the function that returns its words"""
+    says_all: the detail of its error does"""
     error = _abi.tactus_error()
     status = function(*arguments, error)
     if status == OK:
         return True
     if status == NOTHING:
         return False
-    raise Error(error, subject, words().decode() if words else "")
+    detail = error.detail.decode()
+    raise Error(error, error.object.decode() or subject, *((detail, "") if says_all else ("", detail)))
 
 
 def read_bytes(function: Any, *arguments: Any, subject: str = "") -> bytes:

@@ -120,15 +120,11 @@ class _Arrays(Handle):
     def add(self, function: Any, name: str, *arrays: npt.NDArray[np.float64] | None) -> None:
         call(function, self.handle, text_of(name.encode()), *map(self._address, arrays), subject=name)
 
-    @property
-    def notes(self) -> list[str]:
-        return traces().tactus_arrays_notes(self.handle).decode().splitlines()
-
     def write(self, path: str) -> list[str]:
-        error = _abi.tactus_error()
-        if traces().tactus_arrays_write(self.handle, os.fsencode(path), error):
-            raise refusal_for(error, self.notes[-1]) if self.notes else Error(error)
-        return self.notes
+        notes, error = ctypes.c_char_p(b""), _abi.tactus_error()
+        if traces().tactus_arrays_write(self.handle, os.fsencode(path), ctypes.byref(notes), error):
+            raise refusal_for(error, error.detail.decode()) if error.detail else Error(error)
+        return (notes.value or b"").decode().splitlines()
 
 
 def _touched(contact: Any, where: str) -> tuple[str, float, int]:
@@ -168,9 +164,7 @@ def write_arrays(time: Any, poses: Any, wrenches: Any, devices: Any, contacts: A
             force = None if name not in forces else _vectors(forces[name], f"wrenches[{name!r}]", _FORCE, (3, 6), rows)
             if name in forces and not _is_frame(forces[name]) and np.shape(forces[name])[1] == 6:
                 left_out.append(f"{name}: torques are left out")
-            arrays.add(traces().tactus_arrays_user, name, device, force)
-            if turned is not None:
-                arrays.add(traces().tactus_arrays_device_rotation, name, turned)
+            arrays.add(traces().tactus_arrays_user, name, device, turned, force)
         for name, contact in _by_name(contacts, "user").items():
             touched, stiffness, kind = _touched(contact, f"contacts[{name!r}]")
             for what, wanted, there in (("user", name, {**hands, **forces}), ("object", touched, objects)):

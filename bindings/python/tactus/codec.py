@@ -12,10 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import NO_CLOCK, Handle, answer, bytes_of, call, core, handle_of, path_of, read_bytes
+from ._library import NO_CLOCK, Handle, answer, bytes_of, call, core, described, handle_of, path_of, read_bytes
 from .options import ReceiverOptions, SenderOptions
 from .scene import Scene
 
+END = (1 << 63) - 1  # no packet comes after it
 KINDS = ("rigid", "deformable", "load")
 LAYERS = ("haptic", "visual", "all")
 REASONS = ("request", "heartbeat", "visual", "haptic")
@@ -51,9 +52,13 @@ class Packet:
     offset: int
 
     @classmethod
-    def _of(cls, info: Any, data: bytes = b"") -> Packet:
+    def _of(cls, info: Any, data: bytes = b"", offset: int = 0) -> Packet:
         return cls(data, info.bytes, info.tick, info.number, KINDS[info.kind], bool(info.key), REASONS[info.reason],
-                   LAYERS[info.layer], info.updates, info.substream, info.sequence, info.offset)
+                   LAYERS[info.layer], info.updates, info.substream, info.sequence, offset)
+
+    @classmethod
+    def _sent(cls, packet: Any) -> Packet:
+        return cls._of(packet, ctypes.string_at(packet.data, packet.bytes))
 
 
 PARTS = ("object", "contact", "shape", "touch", "load")
@@ -108,7 +113,8 @@ class Sender(Handle):
     def __init__(self, scene: Scene, **options: Any) -> None:
         super().__init__()
         self._options = SenderOptions(**options)
-        self._buffer = (ctypes.c_uint8 * 2048)()
+        #: parts of the last tick's truth that break a rule and are held, mostly none
+        self.held: list[Held] = []
         call(core().tactus_sender_create, handle_of(scene, Scene), self._options, ctypes.byref(self._handle))
 
     def encode(self, tick: int, objects: npt.ArrayLike | None = None, contacts: npt.NDArray[np.void] | None = None,
@@ -139,31 +145,15 @@ class Sender(Handle):
             raise ValueError(f"moved has shape {named.shape}, not (M,)")
         if moved is not None:
             truth.moved, truth.moved_count = named.ctypes.data, len(named)
-        count = ctypes.c_size_t()
-        call(core().tactus_sender_encode, self.handle, tick, truth, ctypes.byref(count))
+        encoded = answer(_abi.tactus_encoded)
+        self.held = []
+        call(core().tactus_sender_encode, self.handle, tick, truth, encoded)
         del kept
-        return [self._packet(i) for i in range(count.value)]
-
-    @property
-    def held(self) -> list[Held]:
-        """Parts of the last tick's truth that break a rule and are held, mostly none."""
-        count = ctypes.c_size_t()
-        status = core().tactus_sender_held(self.handle, None, 0, ctypes.byref(count), None)
-        if status == _abi.TACTUS_OK:
+        if encoded.held_count:
+            self.held = [_held(part) for part in _items(_abi.tactus_held, encoded.held, encoded.held_count)]
+        if not encoded.packet_count:
             return []
-        parts = (_abi.tactus_held * count.value)()
-        call(core().tactus_sender_held, self.handle, ctypes.addressof(parts), len(parts), ctypes.byref(count))
-        return [_held(part) for part in parts]
-
-    def _packet(self, index: int) -> Packet:
-        info, size = answer(_abi.tactus_packet_info), ctypes.c_size_t()
-        error = _abi.tactus_error()
-        status = core().tactus_sender_packet(self.handle, index, info, self._buffer, len(self._buffer), ctypes.byref(size), error)
-        if status == _abi.TACTUS_BUFFER_TOO_SMALL:
-            self._buffer = (ctypes.c_uint8 * size.value)()
-        if status:
-            call(core().tactus_sender_packet, self.handle, index, info, self._buffer, len(self._buffer), ctypes.byref(size))
-        return Packet._of(info, ctypes.string_at(self._buffer, size.value))
+        return [Packet._sent(packet) for packet in _items(_abi.tactus_packet, encoded.packets, encoded.packet_count)]
 
     def request_key(self) -> None:
         """A receiver asks for a key packet."""
@@ -177,19 +167,15 @@ class Sender(Handle):
         """The link to the receiver: ticks until a packet is acknowledged (0: not known), and the fraction that is lost."""
         call(core().tactus_sender_set_link, self.handle, answer_ticks, loss)
 
-    def state_hash(self, substream: int = 0) -> int:
-        """Hash of the newest state; equals that of the receiver."""
-        out = ctypes.c_uint64()
-        call(core().tactus_sender_state_hash, self.handle, substream, ctypes.byref(out))
-        return out.value
+
+def _items(structure: Any, address: int, count: int) -> Any:
+    """Structs that the library holds."""
+    return (structure * count).from_address(address)
 
 
 def _held(part: Any) -> Held:
-    error = _abi.tactus_error()
-    error.status, error.rule = _abi.TACTUS_INVALID_ARGUMENT, part.rule
-    by_reference = ctypes.byref(error)
-    return Held(PARTS[part.part], part.index, part.name.decode(), part.since, part.rule.decode(),
-                core().tactus_error_text(by_reference).decode(), core().tactus_error_remedy(by_reference).decode())
+    error = described(_abi.TACTUS_INVALID_ARGUMENT, part.rule)
+    return Held(PARTS[part.part], part.index, part.name.decode(), part.since, part.rule.decode(), error.text.decode(), error.remedy.decode())
 
 
 def _fill_shape(form: Any, shape: Shape) -> npt.NDArray[np.float32] | None:
@@ -224,7 +210,7 @@ class _Shown:
     def poses(self, tick: int) -> npt.NDArray[np.float64]:
         """(N, 7) float64 at this tick, one row per rigid object: position 3 [m], rotation 4 (w x y z); world frame."""
         out = np.empty((self._rigid, 7))
-        call(core().tactus_receiver_poses, self._receiver(), tick, 0, len(out), out.ctypes.data)
+        call(core().tactus_receiver_poses, self._receiver(), tick, 0, len(out), out.ctypes.data, None)
         return out
 
     def displacements(self, mesh: int, tick: int) -> npt.NDArray[np.float32]:
@@ -238,13 +224,13 @@ class _Shown:
     def state_hash(self, substream: int = 0) -> int:
         """Hash of the newest state of a substream; equals that of the sender."""
         out = ctypes.c_uint64()
-        call(core().tactus_receiver_state_hash, self._receiver(), substream, ctypes.byref(out))
+        call(core().tactus_receiver_hash, self._receiver(), substream, ctypes.byref(out), 0, None)
         return out.value
 
     def pose_hash(self, tick: int) -> int:
         """Hash of every pose as shown at a tick."""
         out = ctypes.c_uint64()
-        call(core().tactus_receiver_pose_hash, self._receiver(), tick, ctypes.byref(out))
+        call(core().tactus_receiver_hash, self._receiver(), 0, None, tick, ctypes.byref(out))
         return out.value
 
     def _count(self) -> None:
@@ -306,23 +292,28 @@ class Player(Handle, _Shown):
         out = []
         info = answer(_abi.tactus_packet_info)
         while call(core().tactus_player_play, self.handle, tick, info, subject=self._subject):
-            out.append(Packet._of(info))
+            out.append(Packet._of(info, offset=info.offset))
         return out
+
+    def _info(self) -> _abi.tactus_player_info:
+        info = answer(_abi.tactus_player_info)
+        call(core().tactus_player_get, self.handle, info, subject=self._subject)
+        return info
 
     def next_tick(self) -> int | None:
         """Tick of the next packet; None at the end.   raises  Error"""
-        out = ctypes.c_int64()
-        return out.value if call(core().tactus_player_next_tick, self.handle, ctypes.byref(out), subject=self._subject) else None
+        tick = self._info().next_tick
+        return None if tick == END else tick
 
     @property
     def header_bytes(self) -> int:
         """[bytes] of the scene declaration."""
-        return core().tactus_player_header_bytes(self.handle)
+        return self._info().header_bytes
 
     @property
     def complete(self) -> bool:
         """The file has its end. Valid after the last packet."""
-        return bool(core().tactus_player_complete(self.handle))
+        return bool(self._info().complete)
 
 
 class StreamWriter(Handle):

@@ -8,8 +8,16 @@ from typing import Any
 from . import _abi, _library
 
 
-def _fill(self: Any, init: Any, fields: dict[str, Any]) -> None:
-    init(self, ctypes.sizeof(self))
+def init(options: Any, function: Any = None) -> Any:
+    """A struct with its defaults, which it returns."""
+    name = next(base.__name__ for base in type(options).__mro__ if base.__module__ == _abi.__name__)
+    kind = getattr(_abi, name.upper())
+    (function or _library.core().tactus_init)(kind, ctypes.byref(options), ctypes.sizeof(options))
+    return options
+
+
+def _fill(self: Any, fields: dict[str, Any]) -> None:
+    init(self)
     known = {name for name, *_ in self._fields_ if name not in ("size", "reserved")}
     for name, value in fields.items():
         if name not in known:
@@ -37,7 +45,7 @@ class RigidBounds(_abi.tactus_rigid_bounds):
 
     def __init__(self, **fields: float) -> None:
         super().__init__()
-        _fill(self, _library.core().tactus_rigid_bounds_init, fields)
+        _fill(self, fields)
 
     __repr__ = _text
 
@@ -53,7 +61,7 @@ class DeformableBounds(_abi.tactus_deformable_bounds):
 
     def __init__(self, **fields: float) -> None:
         super().__init__()
-        _fill(self, _library.core().tactus_deformable_bounds_init, fields)
+        _fill(self, fields)
 
     __repr__ = _text
 
@@ -67,7 +75,7 @@ class SceneOptions(_abi.tactus_scene_options):
         super().__init__()
         if "gravity" in fields:
             fields["gravity"] = (ctypes.c_double * 3)(*fields["gravity"])
-        _fill(self, _library.core().tactus_scene_options_init, fields)
+        _fill(self, fields)
         self._kept = limits  # the struct only points to it
         self.limits = ctypes.addressof(limits) if limits is not None else None
 
@@ -77,7 +85,7 @@ class SenderOptions(_abi.tactus_sender_options):
 
     def __init__(self, rigid: RigidBounds | None = None, deformable: DeformableBounds | None = None, **fields: Any) -> None:
         super().__init__()
-        _fill(self, _library.core().tactus_sender_options_init, fields)
+        _fill(self, fields)
         self._kept = (rigid, deformable)  # the struct only points to them
         self.rigid = ctypes.addressof(rigid) if rigid is not None else None
         self.deformable = ctypes.addressof(deformable) if deformable is not None else None
@@ -88,7 +96,7 @@ class Limits(_abi.tactus_limits):
 
     def __init__(self, **fields: int) -> None:
         super().__init__()
-        _fill(self, _library.core().tactus_limits_init, fields)
+        _fill(self, fields)
 
 
 class ReceiverOptions(_abi.tactus_receiver_options):
@@ -96,6 +104,6 @@ class ReceiverOptions(_abi.tactus_receiver_options):
 
     def __init__(self, limits: Limits | None = None, **fields: Any) -> None:
         super().__init__()
-        _fill(self, _library.core().tactus_receiver_options_init, fields)
+        _fill(self, fields)
         self._kept = limits  # the struct only points to it
         self.limits = ctypes.addressof(limits) if limits is not None else None

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from . import _abi
 from ._library import Handle, answer, call, traces
 from .codec import Packet, Player, Sender, StreamWriter
-from .options import DeformableBounds, RigidBounds
+from .options import DeformableBounds, RigidBounds, init
 from .scene import Scene
 from .trace import TraceReader
 
@@ -196,8 +196,7 @@ class _Errors(Handle):
 
     def __init__(self, truth: TraceReader, rigid: RigidBounds, deformable: DeformableBounds, scene: Scene) -> None:
         super().__init__()
-        options = _abi.tactus_errors_options()
-        traces().tactus_errors_options_init(options, ctypes.sizeof(options))
+        options = init(_abi.tactus_errors_options(), traces().tactus_trace_init)
         options.rigid, options.deformable = ctypes.addressof(rigid), ctypes.addressof(deformable)
         options.position_exp = scene.info.position_exp
         options.rings = scene.meshes[0].rings if truth.meshes else options.rings
@@ -205,20 +204,20 @@ class _Errors(Handle):
 
     def add(self, truth: TraceReader, player: Player, tick: int) -> None:
         poses = player.poses(tick)
-        call(traces().tactus_errors_add, self.handle, truth.handle, poses.ctypes.data, len(poses))
-        for mesh in range(len(truth.meshes)):
-            shown = player.displacements(mesh, tick)
-            call(traces().tactus_errors_add_shape, self.handle, truth.handle, mesh, shown.ctypes.data, len(shown))
+        shown = [player.displacements(mesh, tick) for mesh in range(len(truth.meshes))]
+        shapes = (_abi.tactus_shape * len(shown))()
+        for shape, displacements in zip(shapes, shown):
+            shape.displacements, shape.vertices = displacements.ctypes.data, len(displacements)
+        call(traces().tactus_errors_add, self.handle, truth.handle, poses.ctypes.data, len(poses), ctypes.addressof(shapes), len(shapes))
 
-    def summary(self, quantity: int) -> Any:
+    def summary(self, quantity: int, mesh: int = 0) -> Any:
         out = answer(_abi.tactus_error_summary)
-        call(traces().tactus_errors_get, self.handle, quantity, out)
+        call(traces().tactus_errors_get, self.handle, quantity, mesh, out)
         return out
 
     def mesh(self, index: int) -> MeshErrors:
-        out = answer(_abi.tactus_mesh_summary)
-        call(traces().tactus_errors_get_mesh, self.handle, index, out)
-        return MeshErrors(out.frames, out.vertices, out.violations, out.rms, out.max, out.worst_ratio)
+        out = self.summary(_abi.TACTUS_ERROR_SHAPE, index)
+        return MeshErrors(out.ticks, out.vertices, out.violations, out.rms, out.max, out.worst_ratio)
 
 
 def compare(trace: str | os.PathLike[str] | bytes, stream: str | os.PathLike[str] | bytes, rigid_bounds: RigidBounds | None = None,

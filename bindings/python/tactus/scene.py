@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import Error, Handle, answer, bytes_of, call, core, read_bytes, text_of
-from .options import DeformableBounds, Limits, RigidBounds, SceneOptions
+from ._library import Handle, answer, bytes_of, call, core, read_bytes, text_of
+from .options import DeformableBounds, Limits, RigidBounds, SceneOptions, init
 
 
 @dataclasses.dataclass(frozen=True)
@@ -155,11 +155,11 @@ class Scene(Handle):
         call(core().tactus_scene_get_deformable, self.handle, index, info)
         rest = np.empty((info.vertices, 3), np.float32)
         triangles = np.empty((info.triangles, 3), np.uint32)
-        call(core().tactus_scene_get_rest, self.handle, index, rest.ctypes.data, rest.size)
-        call(core().tactus_scene_get_triangles, self.handle, index, triangles.ctypes.data, triangles.size)
         clusters = np.empty(info.vertices, np.uint8) if info.clusters else None
-        if clusters is not None:
-            call(core().tactus_scene_get_clusters, self.handle, index, clusters.ctypes.data, clusters.size)
+        arrays = answer(_abi.tactus_mesh_arrays)
+        arrays.vertices, arrays.rest, arrays.triangles, arrays.corners = len(rest), rest.ctypes.data, len(triangles), triangles.ctypes.data
+        arrays.clusters = None if clusters is None else clusters.ctypes.data
+        call(core().tactus_scene_get_mesh, self.handle, index, arrays)
         modes = 0 if info.clusters else info.modes
         return Mesh(info.name.decode(), rest.astype(np.float64), triangles, info.frame_period, modes, info.rings, clusters, info.blend)
 
@@ -167,12 +167,12 @@ class Scene(Handle):
     def rigid_bounds(self) -> RigidBounds | None:
         """That the sender guarantees for rigid objects; None: not declared."""
         bounds = RigidBounds()
-        return bounds if call(core().tactus_scene_get_rigid_bounds, self.handle, bounds) else None
+        return bounds if call(core().tactus_scene_get_bounds, self.handle, bounds, 0, None, None) else None
 
     def deformable_bounds(self, mesh: int = 0) -> DeformableBounds | None:
         """That the sender guarantees for a mesh; None: not declared."""
         bounds = DeformableBounds()
-        return bounds if call(core().tactus_scene_get_deformable_bounds, self.handle, mesh, bounds) else None
+        return bounds if call(core().tactus_scene_get_bounds, self.handle, None, mesh, bounds, None) else None
 
 
 def _arrays(of: Mesh) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
@@ -211,6 +211,31 @@ def find_clusters(mesh: Mesh, shapes: npt.ArrayLike, most: int) -> Mesh:
     return dataclasses.replace(mesh, clusters=clusters, blend=blend.value)
 
 
+def _physics_of(name: str, of: Elastic) -> _abi.tactus_elastic_physics:
+    """As C takes it; its arrays live as long."""
+    tets = _whole(name, "tets", of.tets, np.uint32, 4)
+    inner = np.ascontiguousarray(of.inner, np.float64).reshape(-1, 3)
+    materials = np.ascontiguousarray(of.materials, np.float64).reshape(-1, 3)
+    fixed = _whole(name, "fixed", of.fixed, np.uint32)
+    material = None if of.material is None else _whole(name, "material", of.material, np.uint8)
+    if material is not None and len(material) != len(tets):
+        raise ValueError(f"{name}: {len(material)} numbers of materials for {len(tets)} tetrahedra")
+    told = init(_abi.tactus_elastic_physics())
+    told._kept = (tets, inner, materials, fixed, material)  # the struct only points to them
+    told.materials, told.material_count = materials.ctypes.data, len(materials)
+    told.inner, told.inner_count = inner.ctypes.data, len(inner)
+    told.tets, told.tet_count = tets.ctypes.data, len(tets)
+    told.fixed, told.fixed_count = fixed.ctypes.data, len(fixed)
+    told.material = None if material is None else material.ctypes.data
+    told.gravity = (ctypes.c_double * 3)(*of.gravity)
+    if of.method not in _METHODS:
+        raise ValueError(f"{name}: method {of.method!r} is none of {', '.join(_METHODS)}")
+    told.method = _METHODS[of.method]
+    for part in ("mass_damping", "stiffness_damping", "coupling", "friction", "sub_steps"):
+        setattr(told, part, getattr(of, part))
+    return told
+
+
 class _Builder(Handle):
     _destroy = "tactus_scene_builder_destroy"
 
@@ -220,58 +245,33 @@ class _Builder(Handle):
 
     def add_rigid(self, of: RigidObject) -> None:
         pose = _abi.tactus_pose((ctypes.c_double * 3)(*of.position), (ctypes.c_double * 4)(*of.rotation))
-        call(core().tactus_scene_builder_rigid, self.handle, text_of(of.name.encode()), ctypes.byref(pose), of.dof, subject=of.name)
+        options = init(_abi.tactus_rigid_options())
+        options.initial, options.dof = pose, of.dof
+        physics = init(_abi.tactus_driven_physics())
         if of.driven is not None:
-            physics = _abi.tactus_driven_physics()
-            core().tactus_driven_physics_init(physics, ctypes.sizeof(physics))
             for field in dataclasses.fields(of.driven):
                 value = getattr(of.driven, field.name)
                 setattr(physics, field.name, (ctypes.c_double * 3)(*value) if field.name == "inertia" else value)
-            call(core().tactus_scene_builder_driven, self.handle, physics, subject=of.name)
+            options.driven = ctypes.addressof(physics)
+        call(core().tactus_scene_builder_rigid, self.handle, text_of(of.name.encode()), options, subject=of.name)
 
     def add_mesh(self, of: Mesh) -> None:
         vertices, triangles = _arrays(of)
-        options = _abi.tactus_deformable_options()
-        core().tactus_deformable_options_init(options, ctypes.sizeof(options))
+        options = init(_abi.tactus_deformable_options())
         options.frame_period, options.spring_modes, options.rings = of.frame_period, of.modes, of.rings
         clusters = np.ascontiguousarray(of.clusters if of.clusters is not None else [], np.uint8)
         if clusters.size:
             if clusters.shape != (len(vertices),) or not np.array_equal(clusters, of.clusters):
                 raise ValueError(f"{of.name}: clusters are (V,) whole numbers from 0 to 63")
             options.clusters, options.cluster_count, options.blend = clusters.ctypes.data, int(clusters.max()) + 1, of.blend
+        physics = None if of.elastic is None else _physics_of(of.name, of.elastic)
+        options.elastic = None if physics is None else ctypes.addressof(physics)
         call(core().tactus_scene_builder_deformable, self.handle, text_of(of.name.encode()), vertices.ctypes.data, len(vertices),
              triangles.ctypes.data, len(triangles), options, subject=of.name)
-        if of.elastic is not None:
-            self._add_elastic(of.name, of.elastic)
-
-    def _add_elastic(self, name: str, of: Elastic) -> None:
-        tets = _whole(name, "tets", of.tets, np.uint32, 4)
-        inner = np.ascontiguousarray(of.inner, np.float64).reshape(-1, 3)
-        materials = np.ascontiguousarray(of.materials, np.float64).reshape(-1, 3)
-        fixed = _whole(name, "fixed", of.fixed, np.uint32)
-        material = None if of.material is None else _whole(name, "material", of.material, np.uint8)
-        if material is not None and len(material) != len(tets):
-            raise ValueError(f"{name}: {len(material)} numbers of materials for {len(tets)} tetrahedra")
-        physics = _abi.tactus_elastic_physics()
-        core().tactus_elastic_physics_init(physics, ctypes.sizeof(physics))
-        physics.materials, physics.material_count = materials.ctypes.data, len(materials)
-        physics.inner, physics.inner_count = inner.ctypes.data, len(inner)
-        physics.tets, physics.tet_count = tets.ctypes.data, len(tets)
-        physics.fixed, physics.fixed_count = fixed.ctypes.data, len(fixed)
-        physics.material = None if material is None else material.ctypes.data
-        physics.gravity = (ctypes.c_double * 3)(*of.gravity)
-        if of.method not in _METHODS:
-            raise ValueError(f"{name}: method {of.method!r} is none of {', '.join(_METHODS)}")
-        physics.method = _METHODS[of.method]
-        for part in ("mass_damping", "stiffness_damping", "coupling", "friction", "sub_steps"):
-            setattr(physics, part, getattr(of, part))
-        call(core().tactus_scene_builder_elastic, self.handle, physics, subject=name)
 
     def build(self) -> Scene:
-        scene, error = Scene(), _abi.tactus_error()
-        if core().tactus_scene_builder_build(self.handle, ctypes.byref(scene._handle), error):
-            raise Error(error, core().tactus_scene_builder_culprit(self.handle).decode(),
-                        detail=core().tactus_scene_builder_detail(self.handle).decode())
+        scene = Scene()
+        call(core().tactus_scene_builder_build, self.handle, ctypes.byref(scene._handle))
         return scene
 
 

@@ -16,7 +16,7 @@ from . import _abi
 from ._library import Error, Handle, answer, bytes_of, call, path_of, read_bytes, text_of, traces
 from .arrays import write_arrays
 from .codec import Shape
-from .options import DeformableBounds, RigidBounds
+from .options import DeformableBounds, RigidBounds, init
 from .scene import Mesh, Scene
 
 #: One user at one tick: device (position (3) [m], orientation (4), velocity (3) [m/s], buttons, time [ns]); contact as CONTACT;
@@ -50,6 +50,13 @@ def _names_of_forces(bits: int) -> frozenset[str]:
     return frozenset(name for name, bit in (("rendered", _abi.TACTUS_FORCE_RENDERED), ("server", _abi.TACTUS_FORCE_SERVER)) if bits & bit)
 
 
+def _copied(address: int | None, rows: int, kind: Any, dtype: Any) -> npt.NDArray[Any]:
+    """Rows of three that the library holds."""
+    if not rows:
+        return np.empty((0, 3), dtype)
+    return np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(kind)), (rows, 3)).copy()
+
+
 class TraceReader(Handle):
     """Reads a trace file frame by frame, in little memory: `for frame in reader`, once. A path, "-" for standard input, or the bytes of a
     file."""
@@ -62,14 +69,12 @@ class TraceReader(Handle):
         path = path_of(file)
         if path is None:
             self._subject, self._bytes = "", bytes_of(file)  # the trace reads them in place
-            call(traces().tactus_trace_open_memory, self._bytes, len(self._bytes), ctypes.byref(self._handle),
-                 words=traces().tactus_trace_error_words)
+            call(traces().tactus_trace_open, None, self._bytes, len(self._bytes), ctypes.byref(self._handle), says_all=True)
         else:
             self._subject = path
-            call(traces().tactus_trace_open, text_of(os.fsencode(path)), ctypes.byref(self._handle), subject=self._subject,
-                 words=traces().tactus_trace_error_words)
-        info = answer(_abi.tactus_trace_info)
-        call(traces().tactus_trace_get, self.handle, info)
+            call(traces().tactus_trace_open, text_of(os.fsencode(path)), None, 0, ctypes.byref(self._handle), subject=self._subject,
+                 says_all=True)
+        info = self._info()
         self.tick_rate: int = info.tick_rate  #: ticks per second
         self.source: str = info.source.decode()  #: "sim push-1dof seed 1"
         self.frames: int | None = info.frames if info.has_frames else None  #: how many, if the file states it
@@ -84,6 +89,11 @@ class TraceReader(Handle):
         self.recorded_forces: list[frozenset[str]] = [_names_of_forces(entry.forces) for entry in users]
         self.meshes: list[Mesh] = [self._mesh(i) for i in range(info.meshes)]
 
+    def _info(self) -> _abi.tactus_trace_info:
+        info = answer(_abi.tactus_trace_info)
+        call(traces().tactus_trace_get, self.handle, info)
+        return info
+
     def _entries(self, function: Any, structure: Any, count: int) -> list[Any]:
         out = [answer(structure) for _ in range(count)]
         for i, info in enumerate(out):
@@ -93,9 +103,8 @@ class TraceReader(Handle):
     def _mesh(self, index: int) -> Mesh:
         info = answer(_abi.tactus_trace_mesh)
         call(traces().tactus_trace_get_mesh, self.handle, index, info)
-        rest, triangles = np.empty((info.vertices, 3)), np.empty((info.triangles, 3), np.uint32)
-        call(traces().tactus_trace_get_rest, self.handle, index, rest.ctypes.data, rest.size)
-        call(traces().tactus_trace_get_triangles, self.handle, index, triangles.ctypes.data, triangles.size)
+        rest = _copied(info.rest, info.vertices, ctypes.c_double, np.float64)
+        triangles = _copied(info.corners, info.triangles, ctypes.c_uint32, np.uint32)
         return Mesh(info.name.decode(), rest, triangles, info.period)
 
     def scene(self, rigid_bounds: RigidBounds | None = None, deformable_bounds: DeformableBounds | None = None, **coding: float) -> Scene:
@@ -105,8 +114,7 @@ class TraceReader(Handle):
         coding                            rigid_profile and deformable_profile (PROFILE_MAIN or _THESIS), baselines, spring_modes, clusters,
                                           world_size [m]
         """
-        options = _abi.tactus_trace_coding()
-        traces().tactus_trace_coding_init(options, ctypes.sizeof(options))
+        options = init(_abi.tactus_trace_coding(), traces().tactus_trace_init)
         for name, value in coding.items():
             if name not in ("rigid_profile", "deformable_profile", "baselines", "spring_modes", "clusters", "world_size"):
                 raise TypeError(f"scene() has no argument {name!r}")
@@ -121,7 +129,7 @@ class TraceReader(Handle):
         while True:
             objects, users = np.empty((len(self.objects), 13)), np.empty(len(self.users), USER)
             if not call(next_frame, self.handle, ctypes.byref(tick), objects.ctypes.data, len(objects), users.ctypes.data, len(users),
-                        subject=self._subject, words=traces().tactus_trace_error_words):
+                        subject=self._subject, says_all=True):
                 return
             yield Frame(tick.value, objects, users, [self._shape(i) for i in range(len(self.meshes))])
 
@@ -137,7 +145,7 @@ class TraceReader(Handle):
     @property
     def cut_short(self) -> bool:
         """The file ends early. Valid after the last frame."""
-        return bool(traces().tactus_trace_cut_short(self.handle))
+        return bool(self._info().cut_short)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -263,14 +271,20 @@ class _Writer(Handle):
         library = traces()
         call(library.tactus_trace_writer_create, text_of(os.fsencode(path)), of.tick_rate, text_of(of.source.encode()), ctypes.byref(self._handle))
         for name, dof in zip(of.object_names, of.dofs or [63] * len(of.object_names)):
-            call(library.tactus_trace_writer_object, self.handle, text_of(name.encode()), dof, subject=name)
+            entry = answer(_abi.tactus_trace_object)
+            entry.name, entry.dof = text_of(name.encode()), dof
+            call(library.tactus_trace_writer_declare, self.handle, entry, None, None, subject=name)
         for name, senses, known in zip(of.user_names, of.senses or [0] * len(of.user_names), of.recorded_forces):
-            bits = (_abi.TACTUS_FORCE_RENDERED if "rendered" in known else 0) | (_abi.TACTUS_FORCE_SERVER if "server" in known else 0)
-            call(library.tactus_trace_writer_user, self.handle, text_of(name.encode()), senses, bits, subject=name)
+            user = answer(_abi.tactus_trace_user)
+            user.name, user.senses = text_of(name.encode()), senses
+            user.forces = (_abi.TACTUS_FORCE_RENDERED if "rendered" in known else 0) | (_abi.TACTUS_FORCE_SERVER if "server" in known else 0)
+            call(library.tactus_trace_writer_declare, self.handle, None, user, None, subject=name)
         for mesh in of.meshes:
             rest, triangles = np.ascontiguousarray(mesh.vertices, np.float64), np.ascontiguousarray(mesh.triangles, np.uint32)
-            call(library.tactus_trace_writer_mesh, self.handle, text_of(mesh.name.encode()), rest.ctypes.data, len(rest),
-                 triangles.ctypes.data, len(triangles), mesh.frame_period, subject=mesh.name)
+            surface = answer(_abi.tactus_trace_mesh)
+            surface.name, surface.period = text_of(mesh.name.encode()), mesh.frame_period
+            surface.rest, surface.vertices, surface.corners, surface.triangles = rest.ctypes.data, len(rest), triangles.ctypes.data, len(triangles)
+            call(library.tactus_trace_writer_declare, self.handle, None, None, surface, subject=mesh.name)
 
     def write(self, of: Trace) -> None:
         objects, users = np.ascontiguousarray(of.objects, np.float64), np.ascontiguousarray(of.users, USER)

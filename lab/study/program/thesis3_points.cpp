@@ -60,7 +60,7 @@ class Watcher {
   }
   /// [N] at the pose shown now; the client keeps what it showed.
   Vec3 look(const TraceFrame& frame, const Contact& contact, bool updated, const RigidTriggers& triggers) {
-    const Pose shown = to_pose(receiver_.replica().pose(contact.object, frame.tick), receiver_.scene()->grid.position);
+    const Pose shown = receiver_.pose(contact.object, frame.tick);
     const Vec3 force = contact_force(contact, frame.objects[contact.object].pose), estimate = contact_force(contact, shown);
     const double ratio = haptic_ratio(triggers, force, estimate);
     ++effect_.ticks;
