@@ -291,13 +291,13 @@ Failure unknown_option(const std::string& typed, const CLI::App& app) {
   const std::vector<std::string> keys = names_of_keys(app);
   if (name.starts_with(kKey) && !keys.empty()) {
     const std::string key = name.substr(kKey.size());
-    return {fmt::format("{} has no key {} of --tune{}", words_of(app), key, did_you_mean(key, keys)),
-            list_of_keys(app), Failure::Cause::arguments};
+    return {fmt::format("{} has no key {} of --tune{}", words_of(app), key, did_you_mean(key, keys)), list_of_keys(app),
+            Failure::Cause::arguments};
   }
   if (name.starts_with(kKey)) return unknown_option(std::string(kTune), app);
   Failure out =
       wrong_use(fmt::format("{} has no option {}{}", words_of(app), typed, did_you_mean(name, names_of_options(app))), app);
-  if (const std::string now = key_in_place_of(name, keys); !now.empty()) {
+  if (const std::string now = key_instead_of(name, keys); !now.empty()) {
     out.text = fmt::format("{} has no option {}", words_of(app), typed);
     out.remedy = fmt::format("{} is now --tune {}{}", name, now, now.ends_with('.') ? "" : ".");
   }

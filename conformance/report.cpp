@@ -189,7 +189,8 @@ class Client {
       path->shift(0, 0);
     }
     TACTUS_TRY(Receiver receiver,
-               Receiver::create(scene, {.replica = {.interpolation = interpolation_in(*scene, interpolation)}, .limits = kLimits}, path));
+               Receiver::create(scene, {.replica = {.interpolation = interpolation_in(*scene, interpolation)}, .limits = kLimits},
+                                path));
     const std::int64_t delay = interpolation == Interpolation::playout ? kPlayoutDelay : 0;
     return Client(scene, std::move(receiver), interpolation.has_value(), delay, std::move(path));
   }

@@ -25,7 +25,7 @@ constexpr std::uint64_t kAckDelay = 25'000;  // [us] after which an acknowledgem
 /// What the server sends to an address.
 struct Peer {
   std::uint64_t epoch = 0;
-  std::uint16_t newest = 0;                                       // number of its datagrams
+  std::uint16_t newest = 0;                                           // number of its datagrams
   std::optional<std::pair<std::uint16_t, std::uint64_t>> reported{};  // newest, missing
 };
 

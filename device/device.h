@@ -34,7 +34,7 @@ struct Capabilities {
   double nominal_force = 0;  ///< [N] that it can hold
   double peak_force = 0;     ///< [N]
   double rate = 0;           ///< [Hz] at which it has new samples
-  bool has_clock = false;        ///< read() waits for the device's own clock; otherwise it returns at once
+  bool has_clock = false;    ///< read() waits for the device's own clock; otherwise it returns at once
   /// Nobody here interprets what the device says: it has no position, and what it says is handed on by reports(). What that means (HID
   /// 1.11, section 6.2.2).
   std::optional<std::vector<std::uint8_t>> report_descriptor{};

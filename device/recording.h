@@ -18,8 +18,8 @@ namespace tactus::device {
 // ==== recording ====
 
 struct RecordingOptions {
-  std::string user{};  ///< empty: the first
-  double playback_rate = 1;     ///< 0.5: half as fast, > 0
+  std::string user{};        ///< empty: the first
+  double playback_rate = 1;  ///< 0.5: half as fast, > 0
   bool loops = false;
 };
 

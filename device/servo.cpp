@@ -13,7 +13,7 @@ namespace tactus::device {
 namespace {
 
 constexpr double kUsualRate = 1000, kMostRate = 10'000;  // [Hz]
-constexpr Time kTimeout = 15 * kMillisecond;            // of the thread that watches, which looks each kLook
+constexpr Time kTimeout = 15 * kMillisecond;             // of the thread that watches, which looks each kLook
 constexpr Time kLook = 4 * kMillisecond;
 
 }  // namespace

@@ -26,7 +26,8 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < touched.size(); ++i)
       touched[i] += frame.users[i].contact.kind != tactus::ContactKind::none || frame.users[i].surface_contact ? 1 : 0;
   }
-  for (std::size_t i = 0; i < travelled.size(); ++i) std::printf("%s travelled %.3f m\n", info.objects[i].name.c_str(), travelled[i]);
+  for (std::size_t i = 0; i < travelled.size(); ++i)
+    std::printf("%s travelled %.3f m\n", info.objects[i].name.c_str(), travelled[i]);
   for (std::size_t i = 0; i < touched.size(); ++i)
     std::printf("%s touched something for %.3f s\n", info.users[i].name.c_str(),
                 touched[i] / static_cast<double>(info.tick_rate));

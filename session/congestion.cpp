@@ -9,8 +9,8 @@
 namespace tactus {
 namespace {
 
-constexpr std::uint64_t kPeriod = 500'000;                     // [us]
-constexpr std::uint64_t kLongWait = 100'000;                   // [us] of packets for their turn
+constexpr std::uint64_t kPeriod = 500'000;               // [us]
+constexpr std::uint64_t kLongWait = 100'000;             // [us] of packets for their turn
 constexpr std::uint32_t kLeastCalm = 1, kMostCalm = 64;  // periods
 
 // Of the rate of a line.
@@ -27,7 +27,7 @@ constexpr std::uint64_t kFirstWindow = 16, kFewest = 4, kMostInFlight = 800;
 constexpr std::uint64_t kMostMore = 16;       // 1/32 of the rate
 constexpr std::int64_t kPieceQueue = 5'000;   // [us] on the line, at which fewer go
 constexpr std::uint64_t kRecent = 1'000'000;  // [us]
-constexpr std::int64_t kAckDelay = 10'000;      // [us] that an acknowledgement waits
+constexpr std::int64_t kAckDelay = 10'000;    // [us] that an acknowledgement waits
 
 }  // namespace
 

@@ -164,7 +164,7 @@ class Congestion {
   bool tick(bool held, bool shapes, std::uint64_t now) noexcept;
 
   bool waits() const noexcept { return waits_; }  ///< packets wait for their turn
-  double bound_scale() const noexcept;               ///< factor of all bounds: 2^(steps / 2)
+  double bound_scale() const noexcept;            ///< factor of all bounds: 2^(steps / 2)
   const BoundScaling& so_far() const noexcept { return so_far_; }
 
  private:
@@ -177,7 +177,7 @@ class Congestion {
   std::uint32_t ticks_ = 0, held_ = 0, waits_begun_ = 0, shapes_ = 0, left_out_ = 0;  // of the period
   bool was_held_ = false, answered_ = false, waits_ = false;
   std::uint32_t calm_ = 0, calm_needed_ = 1;  // periods: so far, before a step narrower
-  bool narrowed_ = false;                  // by the last step, and nothing speaks against it so far
+  bool narrowed_ = false;                     // by the last step, and nothing speaks against it so far
   BoundScaling so_far_;
 };
 

@@ -14,10 +14,11 @@ constexpr std::uint16_t kHandshake = 0, kParts = 1, kPacket = 2;
 // Kinds of handshakes.
 constexpr std::uint16_t kJoin = 0, kWelcome = 1, kRefusal = 2, kLeave = 3, kFirstUnknownKind = 4;
 // Types of parts.
-constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kTickMapping = 3, kPiece = 4, kReport = 4, kState = 5, kSeat = 5,
-                       kHash = 6, kBaselines = 6, kFragment = 7,
-                       kFirstUnknown =
-                           9;  // up 3 buttons, 4 report, 5 state, 6 hash; down 3 tick mapping, 4 piece, 5 seat, 6 baselines; 8: packet
+constexpr std::uint8_t
+    kAcknowledgement = 1,
+    kClock = 2, kButtons = 3, kTickMapping = 3, kPiece = 4, kReport = 4, kState = 5, kSeat = 5, kHash = 6, kBaselines = 6,
+    kFragment = 7,
+    kFirstUnknown = 9;  // up 3 buttons, 4 report, 5 state, 6 hash; down 3 tick mapping, 4 piece, 5 seat, 6 baselines; 8: packet
 
 constexpr std::uint32_t kMagic = 0x53544354;  // "TCTS"
 constexpr std::uint8_t kVersion = 1;

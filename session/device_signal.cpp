@@ -49,7 +49,8 @@ Truth DeviceTruth::of(std::int64_t tick, const DeviceSample& sample, const std::
   if (senses_velocity_) {
     sample_.velocity = sample.velocity;
   } else {
-    if (is_finite(sample.position)) positions_[count_++ % kSamples] = {tick, sample.position};  // else only this sample is refused
+    if (is_finite(sample.position))
+      positions_[count_++ % kSamples] = {tick, sample.position};  // else only this sample is refused
     sample_.velocity = static_cast<double>(tick_rate_) * slope();
   }
   // The error of the device is that of the other end of the spring: the force and its threshold are the same.

@@ -14,16 +14,16 @@
 namespace tactus {
 namespace {
 
-constexpr std::uint64_t kSilence = 1'000'000;      // [us] without acknowledgements, at least, before an end sends little
-constexpr std::uint64_t kSeldom = 50'000;          // [us] from datagram to datagram then
-constexpr std::uint64_t kSparing = 1024;           // the wait is this part of the silence at least: numbers last for 17 minutes
-constexpr std::uint32_t kSomeLoss = 65536 / 100;   // above, no acknowledgement waits long
-constexpr std::int64_t kSlowestCopy = 80'000;      // [us] until the other end has the copy of a shape, if it shows later ticks
-constexpr std::uint64_t kLatestShape = 120'000;    // [us] from the first sending of a shape to its copy
-constexpr std::uint64_t kLatestRigid = 400'000;    // [us] the same of rigid objects, at least
-constexpr std::uint64_t kPieceReorder = 16;        // numbers by which pieces may come out of order
-constexpr std::uint64_t kBelated = 20'000;         // [us] a packet that no other waits for has a use after its tick was shown
-constexpr std::int64_t kLongTrip = 80'000;         // [us] from which on there is no time for a second round of copies
+constexpr std::uint64_t kSilence = 1'000'000;     // [us] without acknowledgements, at least, before an end sends little
+constexpr std::uint64_t kSeldom = 50'000;         // [us] from datagram to datagram then
+constexpr std::uint64_t kSparing = 1024;          // the wait is this part of the silence at least: numbers last for 17 minutes
+constexpr std::uint32_t kSomeLoss = 65536 / 100;  // above, no acknowledgement waits long
+constexpr std::int64_t kSlowestCopy = 80'000;     // [us] until the other end has the copy of a shape, if it shows later ticks
+constexpr std::uint64_t kLatestShape = 120'000;   // [us] from the first sending of a shape to its copy
+constexpr std::uint64_t kLatestRigid = 400'000;   // [us] the same of rigid objects, at least
+constexpr std::uint64_t kPieceReorder = 16;       // numbers by which pieces may come out of order
+constexpr std::uint64_t kBelated = 20'000;        // [us] a packet that no other waits for has a use after its tick was shown
+constexpr std::int64_t kLongTrip = 80'000;        // [us] from which on there is no time for a second round of copies
 constexpr std::uint64_t kInitialAckTimeout = 250'000;  // [us] while no round trip is known
 
 std::size_t largest_packet(const Scene& scene) {
@@ -70,8 +70,8 @@ Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
   }
   const bool drives = path && direction_ == Direction::down;
   const AckTiming ack_timing = std::holds_alternative<StatePart>(part)   ? drives ? AckTiming::soon : AckTiming::now
-                    : std::holds_alternative<ClockPart>(part) ? AckTiming::never
-                                                              : AckTiming::soon;
+                               : std::holds_alternative<ClockPart>(part) ? AckTiming::never
+                                                                         : AckTiming::soon;
   reading.ack_timing = std::max(reading.ack_timing, ack_timing);
   if (const auto* fragment = std::get_if<FragmentPart>(&part)) {
     TACTUS_CHECK(take(*fragment, reading));
@@ -151,10 +151,10 @@ Result<void> Exchange::acknowledged(const Acknowledgement& ack, Reading& reading
 void Exchange::update_pacer(const Acknowledgement& ack, std::uint64_t now) noexcept {
   const std::int64_t arrived = static_cast<std::int64_t>(now) - std::int64_t{16} * ack.held;
   pieces->pacer.feedback({.number = sent_.highest_acknowledged(),
-                     .newest_sent = sent_.newest(),
-                     .sent = arrived - *sent_.sample(),
-                     .arrived = arrived},
-                    *sent_.round_trip(), now);
+                          .newest_sent = sent_.newest(),
+                          .sent = arrived - *sent_.sample(),
+                          .arrived = arrived},
+                         *sent_.round_trip(), now);
 }
 
 /// A packet of this datagram, or one that it completed.   in   number  0: of no datagram

@@ -21,7 +21,8 @@
 
 namespace tactus {
 
-inline constexpr std::uint64_t kHashEvery = 64;  ///< packets with a number that this divides: clients report the hash of the state
+inline constexpr std::uint64_t kHashEvery =
+    64;  ///< packets with a number that this divides: clients report the hash of the state
 /// [us] of acknowledgements in these directions; of a device whose path both ends know, while they report nothing that is missing
 inline constexpr std::uint64_t kUpAckDelay = 10'000, kDownAckDelay = 25'000, kDrivenAckDelay = 140'000;
 
@@ -112,9 +113,11 @@ class Exchange {
   std::optional<std::uint64_t> unanswered() const noexcept {
     return eliciting_ > sent_.highest_acknowledged() ? std::optional(progress_at_) : std::nullopt;
   }
-  std::uint64_t eliciting_at() const noexcept { return eliciting_at_; }  ///< [us] when the last one went that must be acknowledged
-  void hold_tick() noexcept { ++traffic_.ticks_held; }           ///< instead of submit(): nothing may be sent
-  void set_waits(bool waits) noexcept;                           ///< packets wait for their turn
+  std::uint64_t eliciting_at() const noexcept {
+    return eliciting_at_;
+  }                                                     ///< [us] when the last one went that must be acknowledged
+  void hold_tick() noexcept { ++traffic_.ticks_held; }  ///< instead of submit(): nothing may be sent
+  void set_waits(bool waits) noexcept;                  ///< packets wait for their turn
   const SentNumbers& sent() const noexcept { return sent_; }
   /// Add the next piece to the datagram of this number.   pre  there is one
   bool add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
@@ -217,8 +220,8 @@ class Exchange {
   std::span<const Packet> packets_;  // of the last submit()
   std::size_t next_packet_ = 0, next_fragment_ = 0;
   std::uint64_t heard_at_, sent_at_;
-  std::uint64_t eliciting_at_ = 0;       // [us] when it went
-  std::uint64_t eliciting_ = 0;          // highest ack-eliciting number
+  std::uint64_t eliciting_at_ = 0;   // [us] when it went
+  std::uint64_t eliciting_ = 0;      // highest ack-eliciting number
   std::uint64_t progress_at_ = 0;    // [us] when one was acknowledged, or the first ack-eliciting one went
   std::uint64_t layered_ = 0;        // highest number that brings a layer of a mesh
   bool wants_key_ = false;           // a layer is lost

@@ -164,17 +164,17 @@ std::uint16_t Resends::keep(std::uint64_t datagram, const Packet& packet, const 
   while (count_ == kept_.size() || (count_ > 0 && end_ + size > kept_[first_].begin + capacity)) pop();
   const std::size_t slot = (first_ + count_++) % kept_.size();
   kept_[slot] = {.datagrams = {datagram},
-                  .number = packet.number,
-                  .time = now,
-                  .due = now,
-                  .begin = end_,
-                  .substream = static_cast<std::uint16_t>(packet.substream),
-                  .sequence = packet.sequence,
-                  .index = static_cast<std::uint16_t>(portion.index),
-                  .count = static_cast<std::uint16_t>(portion.count),
-                  .size = static_cast<std::uint16_t>(size),
-                  .copies = 0,
-                  .is_settled = false};
+                 .number = packet.number,
+                 .time = now,
+                 .due = now,
+                 .begin = end_,
+                 .substream = static_cast<std::uint16_t>(packet.substream),
+                 .sequence = packet.sequence,
+                 .index = static_cast<std::uint16_t>(portion.index),
+                 .count = static_cast<std::uint16_t>(portion.count),
+                 .size = static_cast<std::uint16_t>(size),
+                 .copies = 0,
+                 .is_settled = false};
   std::ranges::copy(portion.bytes, bytes_.begin() + static_cast<std::ptrdiff_t>(end_ % capacity));
   end_ += size;
   return static_cast<std::uint16_t>(slot);

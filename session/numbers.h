@@ -193,10 +193,11 @@ class ReceivedNumbers {
   static constexpr unsigned kUnreported = 32;  // of the 65 that an acknowledgement reports: so one of them may be lost
 
   NumberWindow received_, accepted_;
-  unsigned unreported_ = 0;                          // accepted since the last acknowledgement
-  std::uint64_t newest_at_ = 0;                  // [us] when accepted_.newest() came
-  std::optional<std::uint64_t> due_, eliciting_at_;  // eliciting_at_: of the first ack-eliciting one since the last acknowledgement
-  std::uint64_t reported_ = 0, above_reported_ = 0;      // newest of the last acknowledgement; how many above it were accepted
+  unsigned unreported_ = 0;      // accepted since the last acknowledgement
+  std::uint64_t newest_at_ = 0;  // [us] when accepted_.newest() came
+  std::optional<std::uint64_t> due_,
+      eliciting_at_;  // eliciting_at_: of the first ack-eliciting one since the last acknowledgement
+  std::uint64_t reported_ = 0, above_reported_ = 0;  // newest of the last acknowledgement; how many above it were accepted
   bool changes_reported_ = false;                    // one below it was accepted since
 };
 

@@ -14,7 +14,7 @@ constexpr std::uint64_t kWelcomeEvery = 250'000;                             // 
 constexpr std::uint64_t kClockEvery = 100'000, kDrivenClockEvery = 500'000;  // [us]
 constexpr std::uint64_t kPieceLag = 2'000;                                   // [us] of pieces that may be made up for
 constexpr std::uint64_t kJammedEvery = 50'000;                               // [us]: packets through a long queue
-constexpr std::uint64_t kUnvalidated = 10'000'000;                              // [us] for the first datagram in the epoch
+constexpr std::uint64_t kUnvalidated = 10'000'000;                           // [us] for the first datagram in the epoch
 constexpr unsigned kMostFaults = 100;
 constexpr unsigned kLeaves = 3;  // one of them should arrive
 

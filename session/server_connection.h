@@ -137,16 +137,16 @@ class ServerConnection {
   unsigned leaves_ = 0;  // that are still to be sent
   unsigned faults_ = 0;
   std::uint8_t seat_ = 0;
-  bool held_ = false;    // the last tick was not sent
+  bool held_ = false;       // the last tick was not sent
   bool validated_ = false;  // it knows the epoch: the address is its own
-  bool trusts_;          // the transport has validated it before
+  bool trusts_;             // the transport has validated it before
   bool works_elsewhere_;
   enum class Parts : std::uint8_t { none, wanted, asked };
   Parts parts_ = Parts::none;
   std::optional<Sender> old_;  // to be freed elsewhere
   bool outdated_ = false;      // there is a newer scene
   bool repeats_welcome_ = false;
-  bool signals_baselines_ = false;                  // the client does not know yet that they are the acknowledged ones
+  bool signals_baselines_ = false;                // the client does not know yet that they are the acknowledged ones
   bool seat_waits_ = false;                       // for an acknowledgement
   std::optional<LeaveReason> left_;               // sent by the client
   std::uint64_t silence_, headers_, piece_time_;  // [us], [bytes] around a datagram, [us] of a piece at the rate
@@ -168,8 +168,8 @@ class ServerConnection {
   std::uint64_t wrong_states_ = 0;
   std::optional<PlayoutClock> device_clock_;
   std::optional<DeviceTickMapping> mapping_;  // if the device may drive objects
-  std::int64_t next_tick_ = 0;      // of submit()
-  std::uint64_t mapping_at_ = 0;       // [us] when its changes go again
+  std::int64_t next_tick_ = 0;                // of submit()
+  std::uint64_t mapping_at_ = 0;              // [us] when its changes go again
   ButtonsPart buttons_;
   std::uint64_t playout_ = 0;                    // [us] that the client reported last
   std::optional<Vec3> view_;                     // [m] where it looks from, by its report

@@ -76,19 +76,19 @@ struct SessionClient::Impl {
   std::uint64_t opened_at = 0, join_at = 0, retry = 0;
   bool rejoins = false;  // a join went in this silence
   std::uint8_t seat = 0;
-  std::uint64_t looked_at = 0;     // [us] of the last call
-  std::uint64_t woke_at = 0;       // [us] of the last after so long that what is known of the delays may be too old
-  std::unique_ptr<Epoch> current;  // the newest
-  std::unique_ptr<Epoch> shown;    // the one before, until the newest is live
-  std::uint64_t keep_alive_at = 0;       // [us] of the last keep-alive
-  std::uint64_t live_number = 0;   // of the first datagram that reported that the client is live; 0: none did yet
-  std::uint64_t packet_at = 0;     // [us] of the last packet
-  bool feels = false;              // the device is in contact
+  std::uint64_t looked_at = 0;      // [us] of the last call
+  std::uint64_t woke_at = 0;        // [us] of the last after so long that what is known of the delays may be too old
+  std::unique_ptr<Epoch> current;   // the newest
+  std::unique_ptr<Epoch> shown;     // the one before, until the newest is live
+  std::uint64_t keep_alive_at = 0;  // [us] of the last keep-alive
+  std::uint64_t live_number = 0;    // of the first datagram that reported that the client is live; 0: none did yet
+  std::uint64_t packet_at = 0;      // [us] of the last packet
+  bool feels = false;               // the device is in contact
   std::optional<HashPart> hash;
   ButtonsPart buttons;
-  std::uint64_t buttons_at = 0;                                // [us] when they go next
-  std::uint64_t buttons_number = 0;                            // of the datagram that first brought them; 0: none yet
-  bool buttons_wait = false;                                   // for an acknowledgement
+  std::uint64_t buttons_at = 0;                                    // [us] when they go next
+  std::uint64_t buttons_number = 0;                                // of the datagram that first brought them; 0: none yet
+  bool buttons_wait = false;                                       // for an acknowledgement
   std::optional<std::array<std::int32_t, 3>> view, view_reported;  // where the user looks from
   ClockOffset offset;
   ForceFade fade;
@@ -220,7 +220,8 @@ Result<void> SessionClient::Impl::take(const Part& part, const Exchange::Heard& 
     const bool was_awake = heard.round_trip && woke_at + static_cast<std::uint64_t>(*heard.round_trip) <= now;
     if (was_awake) offset.add(clock->time, *heard.round_trip, now);
     if (current->playout)
-      current->playout->clock_signalled(static_cast<std::int64_t>(clock->time) - static_cast<std::int64_t>(current->welcome.start), now);
+      current->playout->clock_signalled(
+          static_cast<std::int64_t>(clock->time) - static_cast<std::int64_t>(current->welcome.start), now);
   } else if (const auto* piece = std::get_if<PiecePart>(&part)) {
     return current->pieces.take(piece->index, piece->bytes);
   } else if (const auto* baselines = std::get_if<BaselinesPart>(&part)) {
@@ -306,7 +307,10 @@ std::uint64_t SessionClient::Impl::keep_alive_due() const noexcept {
   const bool served = state == SessionState::receiving || sent < packet_at + kRecent;
   const std::uint64_t times = current->exchange.path ? kSeldom : 1;
   const std::uint64_t rendered = current->exchange.sent().loss() > kSomeLoss ? kRenderedAtLoss : times * kRendered;
-  const std::uint64_t pause = feels ? rendered : options.role == Role::participant ? times * kParticipant : served ? kServed : kIdle;
+  const std::uint64_t pause = feels                               ? rendered
+                              : options.role == Role::participant ? times * kParticipant
+                              : served                            ? kServed
+                                                                  : kIdle;
   const std::uint64_t due = current->exchange.next_send(sent + pause);
   return has_moved() ? std::min(due, current->exchange.next_send(keep_alive_at + kMoving)) : due;
 }
@@ -369,8 +373,8 @@ Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample
   std::array<std::int32_t, 3> position{};
   std::array<std::int32_t, 4> turn{};
   const std::uint8_t exponent = epoch.exchange.sender->scene()->grid.position;
-  const RuleName broken =
-      is_finite(sample.velocity) ? quantise({sample.position, sample.orientation}, exponent, position, turn) : RuleName("R-API-1");
+  const RuleName broken = is_finite(sample.velocity) ? quantise({sample.position, sample.orientation}, exponent, position, turn)
+                                                     : RuleName("R-API-1");
   TACTUS_CHECK(epoch.exchange.submit(now, tick, epoch.device->of(tick, sample, contact)));
   epoch.device_tick = tick;
   in.feels = contact.has_value();

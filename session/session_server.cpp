@@ -242,7 +242,8 @@ Result<void> SessionServer::submit(std::uint64_t now, std::int64_t tick, const T
     const double before = connection->bound_scale();
     if (const auto done = connection->submit(now, tick, truth, hashes); !done && first) first = done;
     if (connection->bound_scale() != before)
-      impl_->note({.kind = ServerEvent::Kind::bounds_scaled, .client = connection->client(), .bound_scale = connection->bound_scale()});
+      impl_->note(
+          {.kind = ServerEvent::Kind::bounds_scaled, .client = connection->client(), .bound_scale = connection->bound_scale()});
   }
   return first;
 }

@@ -33,20 +33,20 @@ struct ClientStatus {
   std::uint8_t seat = 0, wanted_seat = 0;  ///< from 1; 0: none, any
   std::uint64_t heard = 0;                 ///< [us] when its newest datagram came
   std::optional<RoundTrip> round_trip;
-  double loss = 0;      ///< fraction of the last 256 datagrams to the client
-  double bound_scale = 1;  ///< factor of the bounds now
+  double loss = 0;             ///< fraction of the last 256 datagrams to the client
+  double bound_scale = 1;      ///< factor of the bounds now
   BoundScaling bound_scaling;  ///< since it joined
   Traffic traffic;
 };
 
 struct ServerEvent {
   enum class Kind : std::uint8_t {
-    joined,   ///< and gets the declaration
-    live,     ///< holds it
-    left,     ///< for `reason`
-    moved,    ///< its address is another one: ClientStatus::peer
+    joined,         ///< and gets the declaration
+    live,           ///< holds it
+    left,           ///< for `reason`
+    moved,          ///< its address is another one: ClientStatus::peer
     bounds_scaled,  ///< its bounds are multiplied by `bound_scale` from now on
-    refused,  ///< joins, for `reason`; `client` is nobody
+    refused,        ///< joins, for `reason`; `client` is nobody
   };
   Kind kind = Kind::joined;
   std::uint16_t client = 0;

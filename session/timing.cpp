@@ -76,11 +76,12 @@ constexpr std::uint64_t kAdaptEvery = 100'000;                 // [us]
 constexpr std::int64_t kShrink = 100;                          // [us] in this time: 1 ms per second
 constexpr std::int64_t kLong = 150'000;                        // [us]: what is above goes sooner
 constexpr std::uint64_t kUndecided = 1'000'000;  // [us] in which a change is found to be one of the link or of a clock
-constexpr std::int64_t kAckDelay = 10'000, kMargin = 10'000, kApart = 10'000;  // [us] of an acknowledgement; beyond; between copies
+constexpr std::int64_t kAckDelay = 10'000, kMargin = 10'000,
+                       kApart = 10'000;  // [us] of an acknowledgement; beyond; between copies
 constexpr std::uint32_t kLossy = 65536 / 333, kLossier = 65536 / 20, kLossiest = 65536 * 3 / 20;  // fractions x 2^-16
 constexpr std::int64_t kLeastJitter = 20'000;                                                     // [us]
 constexpr std::int64_t kMostJitter = 50'000;  // [us] of round trips: what is above is a standstill or a queue
-constexpr std::uint64_t kReordering = 5'000;   // [us] that a packet waits for one that is not lost but late
+constexpr std::uint64_t kReordering = 5'000;  // [us] that a packet waits for one that is not lost but late
 constexpr std::uint64_t kSettle = 20'000;     // [us] in which an end that woke up takes what has waited
 
 constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }

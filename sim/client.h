@@ -92,7 +92,7 @@ class Client {
   void touch(std::span<const DeviceSample> devices) noexcept;
   /// How a force is rendered.
   struct Rendering {
-    double fraction = 1;         ///< of it
+    double fraction = 1;      ///< of it
     std::uint32_t delay = 0;  ///< [ticks] of what is shown; 0: there is none to make up for
   };
   /// A network shows nothing any more: the receiver of the last show() is gone, or not to be read. What was shown stays.
@@ -110,7 +110,7 @@ class Client {
   /// [N/m] of the spring that rendered a user's force in the last touch(); 0: of none.
   double stiffness(std::size_t user) const noexcept { return stiffness_[user]; }
   const Vec3& rendered_force(std::size_t user) const noexcept { return rendered_[user]; }  ///< [N] rendered in the last touch()
-  std::span<const Pose> poses() const noexcept { return poses_; }            ///< as shown, one per object of the trace
+  std::span<const Pose> poses() const noexcept { return poses_; }  ///< as shown, one per object of the trace
   /// What it received for the tick that it shows: the same, unless it simulates itself.
   std::span<const Pose> received() const noexcept { return prediction_ ? prediction_->heard() : poses_; }
   const Pose& watched(std::size_t user) const noexcept;         ///< pose of the object that this user looks at
@@ -146,7 +146,7 @@ class Client {
   std::optional<MsdView> msds_;
   std::optional<DeformableView> deformables_;
   std::vector<Touchable*> objects_;  // these, and those that the server lends
-  std::vector<Vec3> rendered_;           // [N] one per user
+  std::vector<Vec3> rendered_;       // [N] one per user
   std::vector<std::optional<DeviceContact>> contacts_;
   std::vector<double> stiffness_;  // [N/m]
   bool measures_ = false;

@@ -24,7 +24,8 @@ struct ServerCodec {
   SenderOptions sender;
   TraceCoding coding{};   ///< of the scene's objects
   bool sessions = false;  ///< clients have sessions of their own, which code for them
-  double client_model_scale = 1;  ///< with sessions: mass and Young's modulus declared to clients, times the true ones; 0: none are declared
+  double client_model_scale =
+      1;  ///< with sessions: mass and Young's modulus declared to clients, times the true ones; 0: none are declared
   DecodeLimits limits{};  ///< of who takes the scene
 };
 
@@ -88,7 +89,7 @@ class Server {
   std::optional<Sender> sender_;
   std::optional<FrameTruth> truth_;
   TraceFrame frame_;
-  std::vector<double> held_;    // fraction of each user's force that acts
+  std::vector<double> held_;       // fraction of each user's force that acts
   std::vector<double> fractions_;  // of each user's force that the device renders, times that
 };
 

@@ -33,7 +33,7 @@ struct Simulation::Impl {
   PerfectLink link;
   std::vector<std::optional<DeviceContact>> contacts;  // of the devices, in the tick before
   std::vector<std::int64_t> shown;                     // tick, at each user's client
-  std::vector<double> fractions;                          // of the force that it renders
+  std::vector<double> fractions;                       // of the force that it renders
   std::vector<std::uint32_t> delays;                   // [ticks] of what it shows
   std::vector<Hand> hands;                             // one per user, like the vectors below
   std::vector<DeviceSample> devices;                   // of the hands
@@ -49,7 +49,8 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   ServerOptions of_server{options.seed, {}, options.mesh_noise, options.estimate_every, options.parts};
   const bool is_remote = options.channel && options.channel->network;
   if (options.channel)
-    of_server.codec = ServerCodec{options.channel->sender, options.channel->coding, is_remote, options.channel->client_model_scale};
+    of_server.codec =
+        ServerCodec{options.channel->sender, options.channel->coding, is_remote, options.channel->client_model_scale};
   auto impl = std::make_unique<Impl>();
   impl->seed = options.seed;
   TACTUS_TRY(impl->server, Server::create(scene, of_server));
@@ -162,7 +163,9 @@ const Pose& Simulation::watched(std::size_t user) const noexcept { return impl_-
 std::int64_t Simulation::shown_tick(std::size_t user) const noexcept {
   return impl_->network ? impl_->shown[user] : impl_->server->frame().tick;
 }
-double Simulation::rendered_fraction(std::size_t user) const noexcept { return impl_->contacts[user] ? impl_->fractions[user] : 1; }
+double Simulation::rendered_fraction(std::size_t user) const noexcept {
+  return impl_->contacts[user] ? impl_->fractions[user] : 1;
+}
 double Simulation::round_trip(std::size_t user) const noexcept { return kTick * impl_->delays[user]; }
 double Simulation::stiffness(std::size_t user) const noexcept { return impl_->client(user).stiffness(user); }
 std::optional<Vec3> Simulation::touched_point(std::size_t user) const noexcept {

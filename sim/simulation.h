@@ -36,11 +36,11 @@ namespace tactus::sim {
 struct ChannelOptions {
   SenderOptions sender;
   ReplicaOptions replica;
-  TraceCoding coding{};        ///< of the scene's objects
-  double client_model_scale = 1;             ///< with a network: as ServerCodec::client_model_scale
-  const Scene* own = nullptr;  ///< what clients simulate themselves, if they do; null: the scene
-  bool timed = false;          ///< with a network: client_costs() are measured, about 1 us per tick and user
-  NetworkMaker network{};      ///< each user has a client behind it; none: one client, and no time passes
+  TraceCoding coding{};           ///< of the scene's objects
+  double client_model_scale = 1;  ///< with a network: as ServerCodec::client_model_scale
+  const Scene* own = nullptr;     ///< what clients simulate themselves, if they do; null: the scene
+  bool timed = false;             ///< with a network: client_costs() are measured, about 1 us per tick and user
+  NetworkMaker network{};         ///< each user has a client behind it; none: one client, and no time passes
 };
 
 struct SimulationOptions {
@@ -82,8 +82,8 @@ class Simulation {
   /// The tick whose state the user's client shows: with a network one of the past, -1 before the first.
   std::int64_t shown_tick(std::size_t user) const noexcept;
   double rendered_fraction(std::size_t user) const noexcept;  ///< of the force: less than 1 while the data are old
-  double round_trip(std::size_t user) const noexcept;      ///< [s] age of what is shown, as an answer to the device; 0: not known
-  double stiffness(std::size_t user) const noexcept;       ///< [N/m] with which the user's force was rendered; 0: none was
+  double round_trip(std::size_t user) const noexcept;  ///< [s] age of what is shown, as an answer to the device; 0: not known
+  double stiffness(std::size_t user) const noexcept;   ///< [N/m] with which the user's force was rendered; 0: none was
   std::optional<Vec3> touched_point(
       std::size_t user) const noexcept;                   ///< [m] proxy at the user's client; none: nothing is touched
   Replica& replica() noexcept;                            ///< the client's.   pre  there is a channel without network

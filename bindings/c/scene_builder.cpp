@@ -317,8 +317,8 @@ tactus_status tactus_find_clusters(const double* vertices, size_t vertex_count, 
 }
 
 tactus_status tactus_scene_builder_declare_bounds(tactus_scene_builder* builder, const tactus_rigid_bounds* rigid,
-                                           const tactus_deformable_bounds* deformable, const tactus_load_bounds* load,
-                                           tactus_error* error) {
+                                                  const tactus_deformable_bounds* deformable, const tactus_load_bounds* load,
+                                                  tactus_error* error) {
   return call(error, [&]() -> Outcome {
     if (builder == nullptr) return refuse();
     TACTUS_TRY(const RigidTriggers triggers, bounds_of(rigid));

@@ -89,7 +89,7 @@ tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const ta
     TACTUS_TRY(const Truth taken, sender->truth.of(truth));
     TACTUS_TRY(const auto packets, sender->sender.encode(tick, taken));
     sender->answer.take(*sender->sender.scene(), tick, packets, sender->sender.held());
-    answer(encoded, sender->answer.told());
+    answer(encoded, sender->answer.given());
     return TACTUS_OK;
   });
 }

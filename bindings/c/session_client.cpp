@@ -240,9 +240,9 @@ tactus_status tactus_client_shown_tick(tactus_client* client, uint64_t now, int6
 tactus_status tactus_client_status(tactus_client* client, uint64_t now, tactus_session_status* status, tactus_error* error) {
   return call_at(client, now, error, [&](SessionClient& session) -> Outcome {
     TACTUS_CHECK(check_answer(status));
-    tactus_session_status told = status_of(session.status());
-    told.force_share = session.force_share(now);
-    answer(status, told);
+    tactus_session_status out = status_of(session.status());
+    out.force_fraction = session.force_fraction(now);
+    answer(status, out);
     return TACTUS_OK;
   });
 }

@@ -158,7 +158,7 @@ tactus_status tactus_server_submit(tactus_server* server, uint64_t now, int64_t 
     TACTUS_CHECK(to->submit(now, tick, taken));
     if (encoded == nullptr) return TACTUS_OK;
     server->answer.take(*server->scene, tick, {}, to->held());
-    answer(encoded, server->answer.told());
+    answer(encoded, server->answer.given());
     return TACTUS_OK;
   });
 }
@@ -243,12 +243,12 @@ tactus_status tactus_server_status(tactus_server* server, uint32_t client, uint6
     TACTUS_TRY(const std::uint16_t which, client_of(server, client));
     TACTUS_CHECK(check_answer(status));
     TACTUS_TRY(SessionServer * of, at(server, now));
-    tactus_session_status told = status_of(of->status(which));
+    tactus_session_status out = status_of(of->status(which));
     if (const auto device = of->device(which, now)) {
-      told.has_device = 1;
-      told.device = sample_of(*device);
+      out.has_device = 1;
+      out.device = sample_of(*device);
     }
-    answer(status, told);
+    answer(status, out);
     return TACTUS_OK;
   });
 }

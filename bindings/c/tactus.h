@@ -148,16 +148,16 @@ enum {
 
 typedef struct tactus_rigid_bounds {
   uint32_t size;
-  int32_t haptic;          /* TACTUS_HAPTIC_...; isotropic */
-  double heartbeat;        /* s; 1; 0: off */
-  double visual_position;  /* m; 3e-4 */
-  double visual_rotation;  /* rad; 2 deg */
-  double weber_fraction;   /* p; 0.04 */
+  int32_t haptic;             /* TACTUS_HAPTIC_...; isotropic */
+  double heartbeat;           /* s; 1; 0: off */
+  double visual_position;     /* m; 3e-4 */
+  double visual_rotation;     /* rad; 2 deg */
+  double weber_fraction;      /* p; 0.04 */
   double perceptual_fraction; /* 1 */
-  double cone_angle;       /* rad; 2.1 deg */
-  double fixed_position;   /* m; 0.0015 */
-  double fixed_rotation;   /* rad; 2 deg */
-  double force_floor;      /* N; 0.05: below it the bound is that at this force */
+  double cone_angle;          /* rad; 2.1 deg */
+  double fixed_position;      /* m; 0.0015 */
+  double fixed_rotation;      /* rad; 2 deg */
+  double force_floor;         /* N; 0.05: below it the bound is that at this force */
 } tactus_rigid_bounds;
 
 typedef struct tactus_deformable_bounds {
@@ -299,7 +299,7 @@ enum {
 typedef struct tactus_receiver_options {
   uint32_t size;
   int32_t interpolation;       /* TACTUS_INTERPOLATION_...; none */
-  double fraction;                /* 0.75 of the mean of the last 5 inter-arrival times */
+  double fraction;             /* 0.75 of the mean of the last 5 inter-arrival times */
   double shortest;             /* s; 0.005 */
   double longest;              /* s; 0.1 */
   const tactus_limits* limits; /* NULL: defaults */

@@ -125,8 +125,8 @@ TACTUS_API tactus_status tactus_find_clusters(const double* vertices, size_t ver
                                               uint8_t* clusters, uint32_t* count, uint32_t* blend, tactus_error* error);
 /* Declare the bounds that hold at a client: those of its sender. NULL: defaults. */
 TACTUS_API tactus_status tactus_scene_builder_declare_bounds(tactus_scene_builder* builder, const tactus_rigid_bounds* rigid,
-                                                      const tactus_deformable_bounds* deformable, const tactus_load_bounds* load,
-                                                      tactus_error* error);
+                                                             const tactus_deformable_bounds* deformable,
+                                                             const tactus_load_bounds* load, tactus_error* error);
 /* Check everything and make the scene. The builder is empty then, also after an error.
    err  with the object that it concerns and figures, which live until the next call of the builder */
 TACTUS_API tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_scene** scene, tactus_error* error);
@@ -144,8 +144,8 @@ typedef struct tactus_sender_options {
   int32_t baseline;                 /* TACTUS_BASELINE_...; previous */
   uint32_t first_sequence;          /* 1 */
   double key_interval;              /* s; 5; 0: never */
-  double visual_fraction;              /* deformable, main: a packet corrects errors over this fraction of v; 0: chosen */
-  double haptic_fraction;              /* the same of h */
+  double visual_fraction;           /* deformable, main: a packet corrects errors over this fraction of v; 0: chosen */
+  double haptic_fraction;           /* the same of h */
   const tactus_rigid_bounds* rigid; /* NULL: defaults, as the next two */
   const tactus_deformable_bounds* deformable;
   const tactus_load_bounds* load;
@@ -249,7 +249,8 @@ TACTUS_API tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32
 TACTUS_API tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t ack_timeout, double loss, tactus_error* error);
 /* In a scene with interest: where the receiver looks from, from the next tick on. Before the first call it is declared of all in full.
    in   viewpoints  x y z of each [m, world], two at most: others do not count;  count  0: it looks from nowhere that is known */
-TACTUS_API tactus_status tactus_sender_set_viewpoints(tactus_sender* sender, const double* viewpoints, size_t count, tactus_error* error);
+TACTUS_API tactus_status tactus_sender_set_viewpoints(tactus_sender* sender, const double* viewpoints, size_t count,
+                                                      tactus_error* error);
 
 /* ---------------------------------------------------------------- writer: packets into a stream file */
 

@@ -38,13 +38,13 @@ enum {
 };
 
 enum {
-  TACTUS_EVENT_WELCOMED = 0, /* client: the declaration is on its way */
-  TACTUS_EVENT_JOINED = 1,   /* server: a client joined and gets the declaration */
-  TACTUS_EVENT_LIVE = 2,     /* the declaration is there; client: the receiver has a new scene */
-  TACTUS_EVENT_CLOSED = 3,   /* over, for `reason` */
-  TACTUS_EVENT_BOUNDS_SCALED = 4,  /* server: the bounds of the client are multiplied by `bound_scale` from now on */
-  TACTUS_EVENT_MOVED = 5,    /* server: a client has another address, its `peer` */
-  TACTUS_EVENT_REFUSED = 6   /* server: a join was refused, for `reason`; `client` is nobody */
+  TACTUS_EVENT_WELCOMED = 0,      /* client: the declaration is on its way */
+  TACTUS_EVENT_JOINED = 1,        /* server: a client joined and gets the declaration */
+  TACTUS_EVENT_LIVE = 2,          /* the declaration is there; client: the receiver has a new scene */
+  TACTUS_EVENT_CLOSED = 3,        /* over, for `reason` */
+  TACTUS_EVENT_BOUNDS_SCALED = 4, /* server: the bounds of the client are multiplied by `bound_scale` from now on */
+  TACTUS_EVENT_MOVED = 5,         /* server: a client has another address, its `peer` */
+  TACTUS_EVENT_REFUSED = 6        /* server: a join was refused, for `reason`; `client` is nobody */
 };
 
 typedef struct tactus_event {
@@ -74,12 +74,12 @@ typedef struct tactus_session_status {
   uint64_t datagrams_sent, bytes_sent, packets_sent, payload_sent; /* payload: bytes of packets */
   uint64_t datagrams_heard, bytes_heard, packets_heard, payload_heard;
   uint64_t packets_refused, packets_held, lost, ticks_held, wrong_states;
-  uint32_t seat;        /* what a participant plays, from 1; 0: nothing; TACTUS_ONLY_LOOKS_ON */
-  uint32_t wanted_seat; /* server: 0: any */
-  uint64_t token;       /* client: with which another one goes on with this session (tactus_client_options); 0: none yet */
-  uint64_t world;       /* client: what the server simulates, as its program declares; 0: it does not */
-  double force_share;   /* client: fraction of a force that may be rendered, 0 to 1: without news none */
-  uint32_t has_device;  /* server: 1: the next one is known */
+  uint32_t seat;         /* what a participant plays, from 1; 0: nothing; TACTUS_ONLY_LOOKS_ON */
+  uint32_t wanted_seat;  /* server: 0: any */
+  uint64_t token;        /* client: with which another one goes on with this session (tactus_client_options); 0: none yet */
+  uint64_t world;        /* client: what the server simulates, as its program declares; 0: it does not */
+  double force_fraction; /* client: fraction of a force that may be rendered, 0 to 1: without news none */
+  uint32_t has_device;   /* server: 1: the next one is known */
   uint32_t reserved;
   tactus_device_sample device; /* server: of a participant */
 } tactus_session_status;
@@ -170,7 +170,8 @@ TACTUS_API tactus_status tactus_client_submit(tactus_client* client, uint64_t no
                                               const tactus_device_contact* contact, tactus_error* error);
 /* In a scene with interest: where the user looks from, x y z [m, world], apart from the device; before _open, too, as an observer is declared
    of all until it has reported it. tactus_receiver_poses declares what comes of it. What is not finite, or beyond 8000 km, does not count. */
-TACTUS_API tactus_status tactus_client_set_viewpoint(tactus_client* client, uint64_t now, const double* viewpoint, tactus_error* error);
+TACTUS_API tactus_status tactus_client_set_viewpoint(tactus_client* client, uint64_t now, const double* viewpoint,
+                                                     tactus_error* error);
 /* in   capacity  at least TACTUS_DATAGRAM_BYTES */
 TACTUS_API tactus_status tactus_client_poll_datagram(tactus_client* client, uint64_t now, uint8_t* bytes, size_t capacity,
                                                      size_t* size, tactus_error* error);

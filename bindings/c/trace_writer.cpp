@@ -61,10 +61,10 @@ Result<TraceUser> declared(const tactus_trace_user& user) {
   TACTUS_TRY(const tactus_trace_user u, given_or(&user, tactus_trace_user{}));
   if (u.name == nullptr) return refuse();
   if (u.senses > 15 || u.forces == 0 || u.forces > 3) return fail(Errc::invalid_argument, "R-API-4");
-  const KnownForces known = u.forces == TACTUS_FORCE_FELT     ? KnownForces::felt
-                            : u.forces == TACTUS_FORCE_SERVER ? KnownForces::server
-                                                              : KnownForces::both;
-  return TraceUser{.name = u.name, .senses = senses_of(u.senses), .forces = known};
+  const RecordedForces recorded = u.forces == TACTUS_FORCE_RENDERED ? RecordedForces::rendered
+                                  : u.forces == TACTUS_FORCE_SERVER ? RecordedForces::server
+                                                                    : RecordedForces::both;
+  return TraceUser{.name = u.name, .senses = senses_of(u.senses), .forces = recorded};
 }
 
 /// err  R-API-12 no name or array; R-API-5 too many vertices

@@ -122,7 +122,7 @@ void Answer::clear() noexcept {
   held_.clear();
 }
 
-tactus_encoded Answer::told() const noexcept {
+tactus_encoded Answer::given() const noexcept {
   return {.size = 0,
           .reserved = 0,
           .packets = packets_.data(),

@@ -41,7 +41,7 @@ class Answer {
   /// Take what came of a tick.   in  packets  they live as long as the answer is used
   void take(const Scene& scene, std::int64_t tick, std::span<const Packet> packets, std::span<const HeldPart> held);
   void clear() noexcept;
-  tactus_encoded told() const noexcept;
+  tactus_encoded given() const noexcept;
 
  private:
   std::vector<tactus_packet> packets_;

@@ -245,8 +245,8 @@ Value value_of(const PlayOptions& options, const DeviceRun& run, const RenderedR
 Outcome run(const PlayOptions& options) {
   const std::vector<std::string> others{options.trace, replayed_file(options.device)};
   if (!options.output.empty()) TACTUS_CHECK(OutputFile::check_free(options.output, options.common.existing(), others));
-  auto recording =
-      device::Recording::read(options.trace, {.user = options.user, .playback_rate = options.device.playback_rate, .loops = options.device.loops});
+  auto recording = device::Recording::read(
+      options.trace, {.user = options.user, .playback_rate = options.device.playback_rate, .loops = options.device.loops});
   if (!recording) return refuse_recording(options, recording.error());
   TACTUS_TRY(auto chosen, open_device(options.device, nullptr, 0));
   const device::Capabilities& can = chosen.device->capabilities();

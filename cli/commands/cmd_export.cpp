@@ -56,7 +56,8 @@ void setup_export(Command& app, Action& action) {
   command.add_option("-o,--output", options->output, "CSV to write [standard output]")->type_name("FILE");
   add_output_options(command, options->common);
   command.footer(
-      "A force that the trace does not know has no columns: serve does not receive the force at a hand; join, capture and play know\n"
+      "A force that the trace does not know has no columns: serve does not receive the force at a hand; join, capture and play "
+      "know\n"
       "nothing else.\n"
       "Example:\n  tactus export csv push.mcap -o push.csv");
   on_chosen<ExportOptions>(command, action, options, run);
@@ -182,7 +183,8 @@ void setup_export_foxglove(Command& group, Action& action) {
   command.footer(
       "It holds the surfaces of rigid and deformable objects (their colour is the displacement), each user's device (black), "
       "the point\n"
-      "that it touches (green), the rendered force (orange) and that of the server (blue), as far as they are known, and what plots\n"
+      "that it touches (green), the rendered force (orange) and that of the server (blue), as far as they are known, and what "
+      "plots\n"
       "need of them. Import the layout in the viewer, which otherwise shows no topic of the scene at first.\n"
       "Examples:\n"
       "  tactus export foxglove membrane.mcap -o membrane-3d.mcap --layout membrane.json\n"

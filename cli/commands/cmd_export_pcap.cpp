@@ -85,7 +85,8 @@ Outcome play_all(Playback& play, const ExportPcapOptions& options, TickSpan& tic
   const std::int64_t first = play.frame.tick;
   for (;;) {
     const std::int64_t tick = play.frame.tick;
-    if (const auto done = play_frame(play, tick - first); !done) return refuse(options.input, location_of_tick(tick), done.error());
+    if (const auto done = play_frame(play, tick - first); !done)
+      return refuse(options.input, location_of_tick(tick), done.error());
     ticks.add(tick);
     progress.update(ticks.count());
     TACTUS_TRY(const bool more, next_frame(play.reader, play.frame, options.input));

@@ -162,7 +162,8 @@ void setup_join(Command& app, Action& action) {
       ->type_name("SCENE");
   command.add_option("--user", options->user, "The user of the scene whose hand it is [the first]")->type_name("NAME");
   add_device_options(command, options->device);
-  command.add_option("-o,--output", options->output, "Also write a trace of what is shown and rendered, on the server's time (MCAP)")
+  command
+      .add_option("-o,--output", options->output, "Also write a trace of what is shown and rendered, on the server's time (MCAP)")
       ->type_name("FILE");
   add_quantity(command, "--duration", options->duration, Dimension::time,
                "End after this long [until Ctrl-C or the server's end]");

@@ -154,7 +154,8 @@ void setup_key(Command& app, Action& action) {
       ->type_name("NAME");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing but errors and what was asked for");
   command.footer(
-      "A key is a name and 256 random bits. The name is not secret: it is seen on the network. All files are for their owner alone\n"
+      "A key is a name and 256 random bits. The name is not secret: it is seen on the network. All files are for their owner "
+      "alone\n"
       "(mode 0600). `tactus serve` looks at its list once a second: users come and go while it runs.\n\n"
       "A key for each user:\n"
       "  tactus key lab.keys --add anna                    # anna.key is hers: scp -p anna.key her-machine:\n"

@@ -192,17 +192,17 @@ class Strain {
   /// If more than one in a hundred were.
   void log_missed(std::uint64_t now, std::uint64_t missed, std::uint64_t ticks) const {
     log_.write(now, "missed_ticks",
-              fmt::format("missed {} of {} ticks in {:.0f} s: this machine has no time for them. Serve fewer clients, end other "
-                          "programs, or allow real-time priority (`tactus serve --check` says how)",
-                          missed, ticks, 1e-6 * static_cast<double>(now - looked_at_)),
-              {{"missed", missed}, {"of", ticks}});
+               fmt::format("missed {} of {} ticks in {:.0f} s: this machine has no time for them. Serve fewer clients, end other "
+                           "programs, or allow real-time priority (`tactus serve --check` says how)",
+                           missed, ticks, 1e-6 * static_cast<double>(now - looked_at_)),
+               {{"missed", missed}, {"of", ticks}});
   }
   void log_dropped(std::uint64_t now, std::uint64_t dropped) const {
     log_.write(now, "dropped",
-              fmt::format("the system dropped {} that waited for this program: more came than there was room for "
-                          "(`tactus serve --check` says how much there is)",
-                          counted(dropped, "datagram")),
-              {{"datagrams", dropped}});
+               fmt::format("the system dropped {} that waited for this program: more came than there was room for "
+                           "(`tactus serve --check` says how much there is)",
+                           counted(dropped, "datagram")),
+               {{"datagrams", dropped}});
   }
 
   const EventLog& log_;
@@ -250,7 +250,8 @@ Outcome open_watch(const ServeOptions& options, const sim::Server& world, Server
   facts.objects = world.stream_scene()->objects.size();
   facts.meshes = world.stream_scene()->deformables.size();
   watch.monitor = std::make_unique<Monitor>(options.clients);
-  TACTUS_TRY(watch.metrics, MetricsServer::create(static_cast<std::uint16_t>(*options.metrics), *watch.monitor, std::move(facts)));
+  TACTUS_TRY(watch.metrics,
+             MetricsServer::create(static_cast<std::uint16_t>(*options.metrics), *watch.monitor, std::move(facts)));
   return {};
 }
 

@@ -261,8 +261,8 @@ Outcome check_options(const SimOptions& options) {
                             fmt::format("Give at most {:.0f}s.", std::floor(kMostTicks / sim::kTickRate)));
   if (!options.pcap.empty() && !options.has_network())
     return refuse_arguments("--pcap: without a network there are no datagrams", "Give a network with --link.");
-  for (const auto& [name, why] :
-       {std::pair{"--playout", "nothing is late"}, {"--tune client_model_scale", "there are no clients whose models it could scale"}})
+  for (const auto& [name, why] : {std::pair{"--playout", "nothing is late"},
+                                  {"--tune client_model_scale", "there are no clients whose models it could scale"}})
     if (!options.has_network() && options.common.command->find(name)->count() > 0)
       return refuse_arguments(fmt::format("{}: without a network {}", name, why), "Give --link or --uplink, or leave it out.");
   return {};

@@ -143,7 +143,8 @@ void setup_tolerable(Command& app, Action& action) {
       .add_option("TRACE", options->input, "Recording with contacts (MCAP), - is standard input; or a scene, which is simulated")
       ->type_name("")
       ->required();
-  add_quantity(command, "-c,--weber-fraction", options->weber, Dimension::fraction, "Change of the force that is just noticeable [10%]")
+  add_quantity(command, "-c,--weber-fraction", options->weber, Dimension::fraction,
+               "Change of the force that is just noticeable [10%]")
       ->check(above_zero(Dimension::fraction));
 #ifdef TACTUS_HAS_SIM
   command.add_option("--seed", options->seed, "Of the hands of a scene")

@@ -31,7 +31,7 @@ class CheckedTick {
   std::vector<double> works;          ///< [J] of each user's hand, so far
 
  private:
-  std::vector<Vec3> forces_;  // [N] on the hands in the tick before,
+  std::vector<Vec3> forces_;     // [N] on the hands in the tick before,
   std::vector<Vec3> positions_;  // [m] and where they were
 };
 

@@ -32,8 +32,8 @@ struct SimOptions {
   double duration = -1;   // [s], negative: the scene's
   double mesh_noise = 0;  // [m] RMS per axis
   bool codec = false, check = false;
-  std::string compensation;  // empty: the scene's
-  double client_model_scale = 1;           // mass and stiffness of what devices move, times the true
+  std::string compensation;       // empty: the scene's
+  double client_model_scale = 1;  // mass and stiffness of what devices move, times the true
   TriggerArguments triggers;
   MeshArguments meshes;
   ReplicaOptions replica;

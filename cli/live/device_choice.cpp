@@ -199,7 +199,8 @@ tl::expected<ChosenDevice, Failure> open_device(const DeviceArguments& arguments
   const auto [backend, which] = split(arguments.name);
   if (backend == kVirtual) return open_virtual(arguments, which, scene, user);
   if (backend == kReplay) {
-    auto device = device::open_replay_device(which, {.user = {}, .playback_rate = arguments.playback_rate, .loops = arguments.loops});
+    auto device =
+        device::open_replay_device(which, {.user = {}, .playback_rate = arguments.playback_rate, .loops = arguments.loops});
     if (!device) return refuse(device.error());
     return ChosenDevice{std::move(*device), nullptr, true};
   }

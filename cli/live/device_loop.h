@@ -69,7 +69,8 @@ struct DevicePlan {
 
 class DeviceLoop {
  public:
-  DeviceLoop(const DevicePlan& plan, device::Device& device, Rendered& rendered) : plan_(plan), device_(device), rendered_(rendered) {}
+  DeviceLoop(const DevicePlan& plan, device::Device& device, Rendered& rendered)
+      : plan_(plan), device_(device), rendered_(rendered) {}
 
   /// On a thread of its own; ODE and real-time scheduling belong to it.
   Outcome run();

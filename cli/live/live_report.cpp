@@ -186,10 +186,13 @@ Value round_trip_value(const RoundTrip& trip) {
   return Json{{"smoothed_us", trip.smoothed}, {"variation_us", trip.variation}, {"least_us", trip.least}};
 }
 
-TickTiming tick_timing_of(const Ticker& ticker) { return {ticker.ticks(), ticker.missed(), ticker.lateness(0.5), ticker.lateness(0.99)}; }
+TickTiming tick_timing_of(const Ticker& ticker) {
+  return {ticker.ticks(), ticker.missed(), ticker.lateness(0.5), ticker.lateness(0.99)};
+}
 
 Value tick_timing_value(const TickTiming& timing) {
-  return Json{{"ticks", timing.ticks}, {"missed", timing.missed}, {"lateness_p50_us", timing.p50}, {"lateness_p99_us", timing.p99}};
+  return Json{
+      {"ticks", timing.ticks}, {"missed", timing.missed}, {"lateness_p50_us", timing.p50}, {"lateness_p99_us", timing.p99}};
 }
 
 }  // namespace tactus::cli

@@ -77,8 +77,8 @@ class RenderedRecording final : public Rendered {
   device::Time begin_ = -1;  // of the recording
   bool is_over_ = false;
   Vec3 origin_{};                 // [m] of the device's frame in the recording's
-  Vec3 position_{}, speed_{};        // [m], [m/s] of the hand at the tick before; the speed is smoothed
-  device::Time position_at_ = 0;       // when the hand was there
+  Vec3 position_{}, speed_{};     // [m], [m/s] of the hand at the tick before; the speed is smoothed
+  device::Time position_at_ = 0;  // when the hand was there
   double sum_ = 0, largest_ = 0;  // [m]
   std::uint64_t ticks_ = 0;
 };

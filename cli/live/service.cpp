@@ -83,11 +83,11 @@ void Service::look_at_floods(std::uint64_t now) {
     if (all <= before) continue;
     strangers -= std::min(strangers, all - before);
     report(i, now, "flood", fmt::format("sends too much: dropped {} of its datagrams in 10 s", all - before),
-         {{"dropped", all - before}});
+           {{"dropped", all - before}});
   }
   if (strangers > 0)
     log_.write(now, "flood", fmt::format("strangers send too much: dropped {} of their datagrams in 10 s", strangers),
-              {{"dropped", strangers}});
+               {{"dropped", strangers}});
 }
 
 void Service::close(std::uint64_t now) {
@@ -180,9 +180,9 @@ void Service::look_after(Seat& seat, std::size_t user, std::uint64_t now) {
   world_.lift(user, static_cast<double>(kLifted - std::clamp(silence, kFresh, kLifted)) / (kLifted - kFresh));
   if (const bool lifted = silence > kLifted; lifted != std::exchange(seat.is_lifted, lifted))
     report(*seat.client, now, lifted ? "lifted" : "returned",
-         lifted ? fmt::format("not heard for 1 s: the hand of {} lifts off", name_of(seat))
-                : fmt::format("heard again: it plays {}", name_of(seat)),
-         {{"user", name_of(seat)}});
+           lifted ? fmt::format("not heard for 1 s: the hand of {} lifts off", name_of(seat))
+                  : fmt::format("heard again: it plays {}", name_of(seat)),
+           {{"user", name_of(seat)}});
 }
 
 void Service::leave(Seat& seat, std::size_t user, std::uint64_t now, const std::string& why) {
@@ -220,8 +220,8 @@ void Service::give_seat(const ClientStatus& status, std::uint64_t now) {
     if (status.seat == kOnlyLooksOn) sessions_.seat(client, 0);
     if (std::exchange(reported_[client].looks_on, true)) return;
     report(client, now, "looks_on",
-         status.wanted_seat == 0 ? "looks on: no seat is free"
-                                 : fmt::format("looks on: seat {} is taken, or none of the scene", status.wanted_seat));
+           status.wanted_seat == 0 ? "looks on: no seat is free"
+                                   : fmt::format("looks on: seat {} is taken, or none of the scene", status.wanted_seat));
     return;
   }
   if (seat->client) leave(*seat, number_of(*seat) - 1u, now, "is followed by another client");
@@ -256,7 +256,7 @@ void Service::report(const ServerEvent& event, std::uint64_t now) {
       const std::string address = wire_.address_of(status.peer),
                         role = status.role == Role::observer ? "observer" : "participant";
       return report(event.client, now, "joined", fmt::format("joins from {} as {}", address, role),
-                  {{"address", address}, {"role", role}});
+                    {{"address", address}, {"role", role}});
     }
     case ServerEvent::Kind::live:
       return report(event.client, now, "live", "has the scene");
@@ -292,7 +292,7 @@ void Service::log_refusal(LeaveReason reason, std::uint64_t now) {
                               ? "it speaks another version"
                               : "the scene is beyond its limits (its --limit: memory or declaration)";
   log_.write(now, "refused", fmt::format("a client is refused: {}; {} so far", why, counted(times, "join")),
-            {{"reason", cli::name_of(reason)}, {"joins", times}});
+             {{"reason", cli::name_of(reason)}, {"joins", times}});
 }
 
 void Service::log_held(std::int64_t tick, std::uint64_t now) {
@@ -330,9 +330,10 @@ void Service::log_bound_scale(const ClientStatus& status, std::uint64_t now) {
   if (status.bound_scale == reported.bound_scale || now < reported.scaled_at + kLasting) return;
   reported.bound_scale = status.bound_scale;
   report(status.client, now, "bounds_scaled",
-       status.bound_scale == 1 ? std::string("has the bounds that were asked for again")
-                            : fmt::format("gets bounds {:.3g} times as wide: its network does not carry more", status.bound_scale),
-       {{"bound_scale", status.bound_scale}});
+         status.bound_scale == 1
+             ? std::string("has the bounds that were asked for again")
+             : fmt::format("gets bounds {:.3g} times as wide: its network does not carry more", status.bound_scale),
+         {{"bound_scale", status.bound_scale}});
 }
 
 }  // namespace tactus::cli

@@ -39,7 +39,9 @@ class Service {
   std::size_t live() const;
   std::uint64_t refused() const { return refused_; }
   /// Whose key a client has; empty: there are no keys.
-  std::string user_of(std::uint16_t client) const { return reported_[client].user ? reported_[client].user->name : std::string(); }
+  std::string user_of(std::uint16_t client) const {
+    return reported_[client].user ? reported_[client].user->name : std::string();
+  }
   /// All figures that are of sessions.   time that of status() of each client; allocates nothing
   void describe(ServerFigures& out);
 
@@ -91,7 +93,7 @@ class Service {
   BackgroundWork work_;                   // of the sessions
   std::vector<Seat> seats_;               // by user of the scene
   std::vector<DeviceSample> devices_;     // the same
-  std::vector<Reported> reported_;                // by client
+  std::vector<Reported> reported_;        // by client
   std::int64_t next_ = 0, left_out_ = 0;  // [ticks] the one to be made, those that the world was not simulated
   std::uint64_t refused_ = 0;
   std::uint64_t looked_at_ = 0, limited_ = 0;  // [us], datagrams: when floods were reported last
@@ -100,7 +102,7 @@ class Service {
   TrafficTotal traffic_;
   std::uint64_t joined_ = 0, left_ = 0, moved_ = 0;
   std::array<std::uint64_t, 7> refusals_{};  // by LeaveReason
-  std::uint64_t refusal_logged_at_ = 0;        // [us]
+  std::uint64_t refusal_logged_at_ = 0;      // [us]
   HeldLog held_;
 };
 

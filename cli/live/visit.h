@@ -99,8 +99,8 @@ class Visit {
   bool is_traced_ = true;  // until the server begins anew: its ticks do, too
   bool has_joined_ = false, is_unanswered_ = false, is_alone_ = false, is_unheard_ = false, is_doubted_ = false;
   std::uint64_t begun_at_ = microseconds_now(), receiving_since_ = 0, progress_shown_at_ = 0;  // [us]
-  std::uint64_t renewed_at_ = 0, live_at_ = 0, silent_since_ = 0;                             // [us]
-  std::optional<std::uint8_t> seat_;                                                          // as the server sent it
+  std::uint64_t renewed_at_ = 0, live_at_ = 0, silent_since_ = 0;                              // [us]
+  std::optional<std::uint8_t> seat_;                                                           // as the server sent it
   TraceFrame frame_;
   std::int64_t shown_ = -1, written_ = -1;
 };

@@ -22,11 +22,12 @@ constexpr unsigned kUnwell = 503;
 
 class ListeningMetricsServer final : public MetricsServer {
  public:
-  ListeningMetricsServer(std::uint16_t port, const Monitor& monitor, ServerFacts facts) : monitor_(monitor), facts_(std::move(facts)) {
+  ListeningMetricsServer(std::uint16_t port, const Monitor& monitor, ServerFacts facts)
+      : monitor_(monitor), facts_(std::move(facts)) {
     address_ = fmt::format("http://127.0.0.1:{}{}", server_.open(port), kMetrics);
     server_.serve({.targets = {kMetrics, kHealth},
-                 .nothing = "There are /metrics and /health.\n",
-                 .page = [this](std::string_view target) { return page(target); }});
+                   .nothing = "There are /metrics and /health.\n",
+                   .page = [this](std::string_view target) { return page(target); }});
     thread_ = std::thread([this] { work(); });
   }
   ~ListeningMetricsServer() override {
@@ -62,7 +63,7 @@ class ListeningMetricsServer final : public MetricsServer {
 }  // namespace
 
 tl::expected<std::unique_ptr<MetricsServer>, Failure> MetricsServer::create(std::uint16_t port, const Monitor& monitor,
-                                                                        ServerFacts facts) try {
+                                                                            ServerFacts facts) try {
   return std::make_unique<ListeningMetricsServer>(port, monitor, std::move(facts));
 } catch (const boost::system::system_error& error) {
   return refuse_port(fmt::format("--metrics {}", port), port, error.code().value(), "tcp");

@@ -17,7 +17,7 @@ class MetricsServer {
   /// in   port  0: any free one
   /// err  the port is taken or not allowed; this program was built without it
   static tl::expected<std::unique_ptr<MetricsServer>, Failure> create(std::uint16_t port, const Monitor& monitor,
-                                                                    ServerFacts facts);
+                                                                      ServerFacts facts);
   virtual ~MetricsServer() = default;
 
   virtual const std::string& address() const noexcept = 0;  ///< "http://127.0.0.1:9464/metrics"

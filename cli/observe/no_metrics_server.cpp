@@ -5,7 +5,7 @@
 namespace tactus::cli {
 
 tl::expected<std::unique_ptr<MetricsServer>, Failure> MetricsServer::create(std::uint16_t /*port*/, const Monitor& /*monitor*/,
-                                                                        ServerFacts /*facts*/) {
+                                                                            ServerFacts /*facts*/) {
   return refuse_arguments("--metrics: this program was built without Boost", "Install libboost-dev and build it again.");
 }
 

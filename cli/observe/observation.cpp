@@ -40,8 +40,8 @@ class LiveObservation final : public Observation {
     const std::uint16_t port = server_.open(setup.port);
     address_ = fmt::format("http://127.0.0.1:{}/", port);
     server_.serve({.targets = {kPageTarget, kLiveTarget},
-                 .nothing = "There is / and nothing else.\n",
-                 .page = [page = WebPage{live_page(port), "text/html; charset=utf-8"}](std::string_view) { return page; }});
+                   .nothing = "There is / and nothing else.\n",
+                   .page = [page = WebPage{live_page(port), "text/html; charset=utf-8"}](std::string_view) { return page; }});
     thread_ = std::thread([this] { work(); });
   }
   ~LiveObservation() override { finish(); }

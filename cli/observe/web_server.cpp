@@ -171,7 +171,8 @@ class Observer : public std::enable_shared_from_this<Observer> {
 /// A request and its answer.
 class Knock : public std::enable_shared_from_this<Knock> {
  public:
-  Knock(WebServer::Impl& server, asio::ip::tcp::socket socket) : server_(server), visit_(server.visitors), stream_(std::move(socket)) {
+  Knock(WebServer::Impl& server, asio::ip::tcp::socket socket)
+      : server_(server), visit_(server.visitors), stream_(std::move(socket)) {
     parser_.header_limit(kMostHeader);
     parser_.body_limit(0);
   }

@@ -187,7 +187,7 @@ std::string heading_of(std::string_view option, std::string_view group) {
   const std::string heading = find(kOptions, option, "Options");
   return group == "import" ? find(kImportOptions, option, heading) : heading;
 }
-std::string key_in_place_of(std::string_view option, std::span<const std::string> keys) {
+std::string key_instead_of(std::string_view option, std::span<const std::string> keys) {
   for (const Key& key : kKeys) {
     std::string was(key.was);
     if (was.empty()) {

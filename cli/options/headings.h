@@ -24,7 +24,7 @@ std::string heading_of(std::string_view option, std::string_view group);
 
 /// What is typed now in place of an option that has become a key of --tune: "nugget=...".   in  keys  of the command
 /// out  empty: it has none for it
-std::string key_in_place_of(std::string_view option, std::span<const std::string> keys);
+std::string key_instead_of(std::string_view option, std::span<const std::string> keys);
 
 /// in   command  of the program, not of a group
 std::string heading_of_command(std::string_view command);

@@ -120,9 +120,10 @@ void TriggerArguments::add_to(Command& app) {
           app, key("alpha"), triggers_.cone_angle, Dimension::angle,
           "Largest error of the normal force's direction with --haptic cone [arcsin of -p, what isotropic allows: 2.29deg at 4%]")
           ->check(taken_by_encoder(&RigidTriggers::cone_angle, Dimension::angle, "above 0deg and at most 180deg"));
-  jnd_fraction_ = add_quantity(app, key("jnd_fraction"), triggers_.perceptual_fraction, Dimension::fraction,
-                        "Fraction of the just noticeable difference that --haptic perceptual permits [100%]")
-               ->check(taken_by_encoder(&RigidTriggers::perceptual_fraction, Dimension::fraction, "above 0% and at most 100%"));
+  jnd_fraction_ =
+      add_quantity(app, key("jnd_fraction"), triggers_.perceptual_fraction, Dimension::fraction,
+                   "Fraction of the just noticeable difference that --haptic perceptual permits [100%]")
+          ->check(taken_by_encoder(&RigidTriggers::perceptual_fraction, Dimension::fraction, "above 0% and at most 100%"));
   floor_ = add_quantity(app, key("force_floor"), triggers_.force_floor, Dimension::force,
                         "Forces below this use the deadband at this force [0.05N]")
                ->check(above_zero(Dimension::force));
@@ -231,12 +232,12 @@ void MeshArguments::add_encoder_to(Command& app) {
           ->check(whole_number(0, ModeBasis::kMaxModes))
           ->type_name("K");
   fractions_[0] = add_quantity(app, key("visual_fraction"), visual_fraction_, Dimension::fraction,
-                            "A packet of a deformable object corrects errors above this fraction of --deformable-visual "
-                            "(--profile main) [100%, or 70% for more than 100 shapes/s]")
-                   ->check(within(Dimension::fraction, "0.1%", "100%"));
+                               "A packet of a deformable object corrects errors above this fraction of --deformable-visual "
+                               "(--profile main) [100%, or 70% for more than 100 shapes/s]")
+                      ->check(within(Dimension::fraction, "0.1%", "100%"));
   fractions_[1] = add_quantity(app, key("haptic_fraction"), haptic_fraction_, Dimension::fraction,
-                            "The same of -p's bound (--profile main) [as visual_fraction]")
-                   ->check(within(Dimension::fraction, "0.1%", "100%"));
+                               "The same of -p's bound (--profile main) [as visual_fraction]")
+                      ->check(within(Dimension::fraction, "0.1%", "100%"));
   const std::map<std::string, std::uint8_t> nuggets{{"2%", 1}, {"5%", 2}, {"30%", 4}, {"all", 7}};
   const auto nugget = [this, nuggets](const std::string& name) { coding_.weight_sets = nuggets.at(name); };
   options_.insert(
@@ -249,7 +250,7 @@ void MeshArguments::add_encoder_to(Command& app) {
            ->one_of({"thesis", "main"})
            ->type_name("NAME"),
        modes,
-       fade_ = add_quantity(app, key("fade"), fade_share_, Dimension::fraction,
+       fade_ = add_quantity(app, key("fade"), fade_fraction_, Dimension::fraction,
                             "Share of the corrections outside the basis that fades per second (with a basis) [98%, or 0% for a "
                             "--deformable-visual of 0.01mm and less]")
                    ->check(within(Dimension::fraction, "0%", "100%")),
@@ -300,7 +301,8 @@ Option* add_interpolation(Command& app, ReplicaOptions& options) {
   const std::map<std::string, Interpolation> interpolations{
       {"linear", Interpolation::linear}, {"hermite", Interpolation::hermite}, {"blending", Interpolation::blending}};
   return app.add_flag(
-      "--interpolate", "linear", [&options, interpolations](const std::string& name) { options.interpolation = interpolations.at(name); },
+      "--interpolate", "linear",
+      [&options, interpolations](const std::string& name) { options.interpolation = interpolations.at(name); },
       {"linear", "hermite", "blending"},
       "Smooth the replica over 75 % of the mean inter-arrival time, 5 to 100 ms. With =hermite on cubics that keep the "
       "velocity, with =blending by projective velocity blending, else linear");

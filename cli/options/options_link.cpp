@@ -247,9 +247,10 @@ std::optional<std::uint32_t> playout_of(const std::string& value) {
 
 Option* add_client_model_scale(Command& app, double& value) {
   return app
-      .add_option(key("client_model_scale"), value,
-                  "Mass and stiffness in the clients' models of what their devices move, times the true ones, to see what a wrong "
-                   "model costs; 0: no models are declared [1]")
+      .add_option(
+          key("client_model_scale"), value,
+          "Mass and stiffness in the clients' models of what their devices move, times the true ones, to see what a wrong "
+          "model costs; 0: no models are declared [1]")
       ->check(number(0, 1e3))
       ->type_name("FACTOR");
 }

@@ -41,7 +41,7 @@ Option* add_playout(Command& app, std::string& value);
 std::optional<std::uint32_t> playout_of(const std::string& value);
 
 /// `--tune client_model_scale=FACTOR`.
-Option* add_told(Command& app, double& value);
+Option* add_client_model_scale(Command& app, double& value);
 
 /// `--key FILE`.
 Option* add_key(Command& app, std::string& value);

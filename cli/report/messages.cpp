@@ -32,8 +32,8 @@ std::string location_of_bit(std::uint64_t bit_offset) {
 tl::unexpected<Failure> refuse(const std::string& file, const std::string& location, const Error& error) {
   const int cause = error.code == Errc::io ? errno : 0;
   auto refused =
-      refuse_with(fmt::format("{}{}{}: {}{}{} ({}, {})", shown_path(file), location.empty() ? "" : ", ", location, describe(error),
-                              cause == 0 ? "" : ": ", cause == 0 ? "" : std::generic_category().message(cause),
+      refuse_with(fmt::format("{}{}{}: {}{}{} ({}, {})", shown_path(file), location.empty() ? "" : ", ", location,
+                              describe(error), cause == 0 ? "" : ": ", cause == 0 ? "" : std::generic_category().message(cause),
                               errc_name(error.code), error.rule),
                   file, location, error);
   refused.value().remedy = cause == 0 ? remedy(error) : remedy_of(cause);
@@ -48,8 +48,8 @@ tl::unexpected<Failure> refuse(const std::string& file, const Diagnostic& error)
   const std::string location = location_of(error);
   auto refused = refuse(file, location, error.error);
   if (!error.cause.empty())
-    refused.value().text = fmt::format("{}{}{}: {} ({}, {})", shown_path(file), location.empty() ? "" : ", ", location, error.cause,
-                                       errc_name(error.error.code), error.error.rule);
+    refused.value().text = fmt::format("{}{}{}: {} ({}, {})", shown_path(file), location.empty() ? "" : ", ", location,
+                                       error.cause, errc_name(error.error.code), error.error.rule);
   if (!error.remedy.empty()) refused.value().remedy = error.remedy;
   return refused;
 }

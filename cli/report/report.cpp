@@ -75,8 +75,9 @@ bool has_errors(const ErrorMetrics& f) { return f.position().ticks() > 0 || f.re
 
 /// Errors of one quantity: of ticks, or of vertices in all frames.
 Json series_json(std::uint64_t samples, std::uint64_t over, double mse, double max) {
-  return {{"samples", samples},    {"over", over}, {"fraction_over", per(static_cast<double>(over), static_cast<double>(samples))},
-          {"rms", std::sqrt(mse)}, {"mse", mse},   {"max", max}};
+  return {
+      {"samples", samples},    {"over", over}, {"fraction_over", per(static_cast<double>(over), static_cast<double>(samples))},
+      {"rms", std::sqrt(mse)}, {"mse", mse},   {"max", max}};
 }
 
 Json series_json(const Report& r, const ErrorSeries& s) {

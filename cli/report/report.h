@@ -59,7 +59,7 @@ class StepTimes {
   bool empty() const noexcept { return wall_ns_.empty(); }
   std::size_t count() const noexcept { return wall_ns_.size(); }
   double quantile(TimeOf which, double fraction) const;  ///< [s]; 1: the longest.   pre  not empty
-  double total(TimeOf which) const noexcept;          ///< [s]
+  double total(TimeOf which) const noexcept;             ///< [s]
 
  private:
   const std::vector<std::int64_t>& times(TimeOf which) const noexcept { return which == TimeOf::wall ? wall_ns_ : cpu_ns_; }
@@ -77,7 +77,7 @@ struct MeshReport {
   std::optional<DeformableErrors> fidelity{};
   std::uint64_t frames = 0;  ///< written or read; 0: not said
   double frame_period = 0;   ///< [s] from one to the next, if frames
-  bool guaranteed = true;      ///< the bounds are: false where they only decide what is sent
+  bool guaranteed = true;    ///< the bounds are: false where they only decide what is sent
   StepTimes encode{}, decode{};
 };
 

@@ -71,10 +71,10 @@ void warn_of_swing(const sim::Scene& scene, std::size_t user, const TouchReport&
 void warn_of_undershoot(const sim::Scene& scene, const TouchReport& touch, bool has_network, Report& report) {
   if (!has_network || !scene.compensation || scene.compensation->method != sim::CompensationMethod::stiffness) return;
   if (touch.largest_force >= kUnder * touch.largest_server_force - kUnderForce) return;
-  report.warnings.push_back(
-      fmt::format("{}: at most {:.2g} N are rendered where the server's force is up to {:.2g} N: softer rendering shows what resists "
-                  "steadily, not the impact on what hardly does. Give --compensation simulation",
-                  touch.user, touch.largest_force, touch.largest_server_force));
+  report.warnings.push_back(fmt::format(
+      "{}: at most {:.2g} N are rendered where the server's force is up to {:.2g} N: softer rendering shows what resists "
+      "steadily, not the impact on what hardly does. Give --compensation simulation",
+      touch.user, touch.largest_force, touch.largest_server_force));
 }
 
 /// An object at which several users are, whose clients simulate it without enough damping for long delays; empty: there is none.

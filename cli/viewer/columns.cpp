@@ -201,7 +201,8 @@ void TruthData::add_errors(const TraceFrame& frame, const std::vector<Pose>& sho
     if (user.contact.kind == ContactKind::none) continue;
     const Vec3 force = contact_force(user.contact, frame.objects[user.contact.object].pose);
     const double off = norm(contact_force(user.contact, shown[user.contact.object]) - force);
-    const double budget = declared_bounds_ && has_weber_bound(*declared_bounds_) ? force_budget(*declared_bounds_, norm(force)) : 0;
+    const double budget =
+        declared_bounds_ && has_weber_bound(*declared_bounds_) ? force_budget(*declared_bounds_, norm(force)) : 0;
     const double fraction = budget > 0 ? off / budget : off;
     if (fraction > ratio) ratio = fraction, error = off, bound = budget;
   }
@@ -264,7 +265,8 @@ nlohmann::ordered_json TruthData::take() {
                                  {"device", user.device.take()},
                                  {"contact", user.contact.take()}};
     if (known != RecordedForces::rendered) entry["server"] = user.server.take();
-    if (known == RecordedForces::rendered || (known == RecordedForces::both && user.differ)) entry["rendered"] = user.rendered.take();
+    if (known == RecordedForces::rendered || (known == RecordedForces::both && user.differ))
+      entry["rendered"] = user.rendered.take();
     if (moves) entry["shown"] = user.shown.take();
     out["users"].push_back(std::move(entry));
   }

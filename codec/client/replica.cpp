@@ -119,8 +119,8 @@ RigidPose interpolate_gap(const Scene& scene, const RigidState& a, const RigidSt
 // ==== replica ====
 
 Result<void> Replica::check(const ReplicaOptions& options, const Scene& scene) noexcept {
-  const bool valid = options.fraction > 0 && options.fraction <= 1 && options.shortest >= 0 && options.shortest <= options.longest &&
-                     options.longest <= 10;
+  const bool valid = options.fraction > 0 && options.fraction <= 1 && options.shortest >= 0 &&
+                     options.shortest <= options.longest && options.longest <= 10;
   const bool smooths = options.interpolation != Interpolation::none && options.interpolation != Interpolation::playout;
   if (!valid || (smooths && scene.is_smoothed)) return fail(Errc::invalid_argument, "R-API-4");
   return {};

@@ -97,14 +97,14 @@ enum class Interpolation : std::uint8_t {
   linear,    ///< over t_N, the difference to the new state fades at constant rate (WI): a straight line; thesis eqs. 3.4-3.6
   hermite,   ///< the same on a cubic that keeps the velocity at both ends; thesis eq. 3.7
   blending,  ///< the difference fades at constant rate, the old velocity in a cubic (projective velocity blending); thesis eq. 3.8
-  playout,   ///< the client shows ticks in the past, by a playout delay of its choice, and interpolates over gaps that losses leave
+  playout,  ///< the client shows ticks in the past, by a playout delay of its choice, and interpolates over gaps that losses leave
 };
 
 /// The heuristic for t_N: `fraction` of the mean of the last 5 inter-arrival times, clipped. An update during a running interpolation
 /// ends it: the new state is applied at once.
 struct ReplicaOptions {
   Interpolation interpolation = Interpolation::none;
-  double fraction = 0.75;      ///< P
+  double fraction = 0.75;   ///< P
   double shortest = 0.005;  ///< [s]
   double longest = 0.100;   ///< [s]
 };
@@ -152,7 +152,7 @@ class Replica {
  private:
   static constexpr std::size_t kArrivals = 5;  // M
   struct Track {
-    SmoothedPath path;                   // target: the newest state
+    SmoothedPath path;                // target: the newest state
     std::uint64_t number = 0;         // of its packet
     std::int64_t begin = 0, end = 0;  // [begin, end); empty: no interpolation is running
     PoseOffset error;                 // from where the newest state is at `begin` to what was shown there

@@ -273,7 +273,9 @@ class Of final : public DeformableEncoder {
   }
   bool is_layered() const noexcept override { return layered_; }
   /// Where nothing is lost an acknowledgement is late at most.
-  void set_link(const LinkState& link) noexcept override { stream_.set_ack_timeout(link.loss >= kSomeLoss ? link.ack_timeout : 0); }
+  void set_link(const LinkState& link) noexcept override {
+    stream_.set_ack_timeout(link.loss >= kSomeLoss ? link.ack_timeout : 0);
+  }
   void set_bound_scale(double factor) noexcept override { stream_.codec().set_bound_scale(factor); }
   void request_key() noexcept override { stream_.request_key(); }
   void forget_last() noexcept override { stream_.forget_last(); }

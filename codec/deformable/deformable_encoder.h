@@ -147,7 +147,7 @@ class DeformableEncoder {
   virtual Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept = 0;
   virtual bool is_layered() const noexcept = 0;
   virtual void set_link(const LinkState& link) noexcept = 0;  ///< nothing without Baseline::acknowledged, or with layers
-  virtual void set_bound_scale(double factor) noexcept = 0;      ///< of all thresholds.   pre  factor >= 1
+  virtual void set_bound_scale(double factor) noexcept = 0;   ///< of all thresholds.   pre  factor >= 1
   virtual void request_key() noexcept = 0;
   virtual void forget_last() noexcept = 0;
   virtual void acknowledge(std::uint16_t sequence) noexcept = 0;

@@ -102,7 +102,8 @@ Result<Payload> ThesisEncoder::encode(const EncodeRequest<ThesisState>& request,
   if (request.layer == Layer::visual && key && has_haptic_bound()) return Payload{};
   if (key || &request.base != &request.shown) {
     list_vertices(request.base, request.layer);
-    if (listed_.empty()) listed_.push_back(has_haptic_bound() ? object_.triangles[touch_->triangle][0] : 0);  // R-DEF-12: at least one
+    if (listed_.empty())
+      listed_.push_back(has_haptic_bound() ? object_.triangles[touch_->triangle][0] : 0);  // R-DEF-12: at least one
   }
   models_ = object_.models_kept ? request.base.models : start_;
   ThesisHead head = head_for(request.head);

@@ -10,8 +10,9 @@ namespace {
 using Method = ElasticBody::Method;
 
 constexpr int kRounds = 2, kIterations = 4;
-constexpr double kStill = 0x1p-30;                       // [m/s]
-constexpr double kTrapezoid = 2 - 0x1.6a09e667f3bcdp+0;  // 2 - sqrt(2): fraction of a step of TR-BDF2 that its first stage reaches
+constexpr double kStill = 0x1p-30;  // [m/s]
+constexpr double kTrapezoid =
+    2 - 0x1.6a09e667f3bcdp+0;  // 2 - sqrt(2): fraction of a step of TR-BDF2 that its first stage reaches
 
 /// [s] What a stage of an implicit step reaches, or a sub-step.
 double reach_of(const ElasticBody& body, double step) noexcept {

@@ -66,11 +66,11 @@ class ElasticSolver {
   Elimination elimination_;
   ElasticElements elements_;
   double mass_factor_, stiffness_factor_;
-  std::optional<ElasticMatrix> matrix_;             // none: velocity Verlet
-  std::vector<double> u_, ahead_, force_;           // 3 per vertex: end of the stage; where forces act; forces
-  std::vector<double> start_, begun_;                // 3 per vertex: of a stage, a and b
+  std::optional<ElasticMatrix> matrix_;                   // none: velocity Verlet
+  std::vector<double> u_, ahead_, force_;                 // 3 per vertex: end of the stage; where forces act; forces
+  std::vector<double> start_, begun_;                     // 3 per vertex: of a stage, a and b
   std::vector<double> residual_, z_, direction_, along_;  // 3 per order index: of conjugate gradients
-  std::vector<Rotation> rotations_;                 // by vertex
+  std::vector<Rotation> rotations_;                       // by vertex
 };
 
 }  // namespace tactus

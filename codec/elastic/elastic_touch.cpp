@@ -53,7 +53,8 @@ ElasticTouch::ElasticTouch(const DeformableObject& object) : object_(object) {
   }
 }
 
-ElasticTouch::Foot ElasticTouch::foot(const Vec3& position, std::uint32_t triangle, std::span<const Vec3> vertices) const noexcept {
+ElasticTouch::Foot ElasticTouch::foot(const Vec3& position, std::uint32_t triangle,
+                                      std::span<const Vec3> vertices) const noexcept {
   const auto& [i, j, k] = object_.triangles[triangle];
   Foot out{.triangle = triangle, .weights = nearest_weights(position, vertices[i], vertices[j], vertices[k]), .point = {}};
   out.point = blend(out.weights, vertices[i], vertices[j], vertices[k]);
@@ -65,7 +66,8 @@ ElasticTouch::Foot ElasticTouch::foot(const Vec3& position, std::uint32_t triang
 ElasticTouch::Foot ElasticTouch::nearest(const Vec3& position, std::span<const Vec3> vertices) const noexcept {
   Foot best = foot(position, 0, vertices);
   for (std::uint32_t t = 1; t < object_.triangles.size(); ++t)
-    if (const Foot other = foot(position, t, vertices); other.distance2 < best.distance2 || std::isnan(best.distance2)) best = other;
+    if (const Foot other = foot(position, t, vertices); other.distance2 < best.distance2 || std::isnan(best.distance2))
+      best = other;
   return best;
 }
 

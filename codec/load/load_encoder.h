@@ -71,7 +71,7 @@ class LoadEncoder {
   std::vector<std::size_t> pending_;  // objects, by their index in Scene::moving()
   std::vector<LoadStep> steps_;       // of one object
   std::int64_t sent_ = 0;             // tick of the newest packet
-  std::int64_t ack_timeout_ = 0;           // [ticks] after which a packet that is not acknowledged is made anew; 0: never
+  std::int64_t ack_timeout_ = 0;      // [ticks] after which a packet that is not acknowledged is made anew; 0: never
   std::uint64_t number_ = 0;          // of the newest packet
   bool acknowledged_ = true;          // it is
 };

@@ -75,9 +75,9 @@ struct ModeBasis {
   static constexpr std::size_t kClusterModes = 12;
   static constexpr std::int32_t kMaxEntry = 2047;  ///< so that a sum of 64 products with 15-bit factors fits 32 bits
 
-  std::vector<std::int16_t> entries;   ///< modes x vertices x 3, x 2^-11, |entry| <= kMaxEntry; empty: no basis
+  std::vector<std::int16_t> entries;            ///< modes x vertices x 3, x 2^-11, |entry| <= kMaxEntry; empty: no basis
   ListOfLists<ClusterEntry> cluster_entries{};  ///< by vertex, in place of `entries`, which are mostly 0
-  std::vector<std::uint16_t> steps;    ///< one per mode: quantiser step of its coefficient, x 2^-12 of the visual bound; >= 1
+  std::vector<std::uint16_t> steps;  ///< one per mode: quantiser step of its coefficient, x 2^-12 of the visual bound; >= 1
   friend bool operator==(const ModeBasis&, const ModeBasis&) = default;
 };
 
@@ -132,7 +132,7 @@ struct DeformableObject {
   SpringBasis spring_basis;    ///< main: in place of `basis`, which a Scene then computes
   ClusterBasis cluster_basis;  ///< main: the same
   std::vector<std::uint8_t>
-      stiffness;                    ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not declared
+      stiffness;  ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not declared
   std::optional<ElasticBody> body;  ///< main, not layered: what it is made of; none: not declared
   friend bool operator==(const DeformableObject&, const DeformableObject&) = default;
 };

@@ -21,9 +21,9 @@ std::vector<Vec3> elastic_rest(const DeformableObject& object, unsigned position
 
 struct Elimination {
   static constexpr std::uint32_t kFixed = 0xffffffff;
-  std::vector<std::uint32_t> order;  ///< free vertices
+  std::vector<std::uint32_t> order;        ///< free vertices
   std::vector<std::uint32_t> order_index;  ///< by vertex: its index in `order`; kFixed
-  std::vector<std::uint32_t> first;  ///< by order index: the lowest one that shares a tetrahedron with it
+  std::vector<std::uint32_t> first;        ///< by order index: the lowest one that shares a tetrahedron with it
 };
 
 /// in   vertices  of the object and inner ones.   pre  corners and fixed vertices exist.   time O(tets log tets); allocates

@@ -389,9 +389,9 @@ class Builder {
   const DeformableObject& object_;
   CodingOrder order_;
   ListOfLists<VertexParent> parents_;
-  std::vector<std::uint32_t> order_index_;    // by vertex, in the order
-  std::vector<std::uint8_t> free_;      // by order index
-  std::vector<std::uint32_t> anchors_;  // order indices
+  std::vector<std::uint32_t> order_index_;  // by vertex, in the order
+  std::vector<std::uint8_t> free_;          // by order index
+  std::vector<std::uint32_t> anchors_;      // order indices
 };
 
 }  // namespace

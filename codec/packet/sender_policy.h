@@ -17,10 +17,11 @@ enum class Baseline : std::uint8_t {
 /// What the link to the receiver and back does, as measured. It decides when Baseline::acknowledged sends a state again.
 struct LinkState {
   std::int64_t ack_timeout = 0;  ///< [ticks] after which a packet that arrived is acknowledged: round trip, jitter, time between
-                            ///< acknowledgements. 0: not known, nothing is sent again
-  double loss = 0;          ///< fraction of packets, 0 to 1
-  bool copies = false;  ///< what is lost also comes again as it was, and in time: nothing is made anew before the acknowledgement is due
-  bool waits = false;   ///< packets wait for their turn: rigid objects join one sooner. Also with Baseline::repaired
+                                 ///< acknowledgements. 0: not known, nothing is sent again
+  double loss = 0;               ///< fraction of packets, 0 to 1
+  bool copies =
+      false;  ///< what is lost also comes again as it was, and in time: nothing is made anew before the acknowledgement is due
+  bool waits = false;  ///< packets wait for their turn: rigid objects join one sooner. Also with Baseline::repaired
 };
 
 struct SenderPolicy {

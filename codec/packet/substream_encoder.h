@@ -203,9 +203,9 @@ class SubstreamEncoder {
   std::uint64_t oldest_ = 0;             // lowest base_ allowed: a receiver that asked for a key holds none before
   Before before_{key_, 0};               // the last packet
   bool can_forget_ = false;
-  std::uint64_t newest_ = 0;  // number of the newest state; 0: of none
-  std::int64_t ack_timeout_ = 0;   // [ticks] until it is acknowledged, if it arrived; 0: not known
-  unsigned repeats_ = 0;      // of it so far, at most kMostRepeats
+  std::uint64_t newest_ = 0;      // number of the newest state; 0: of none
+  std::int64_t ack_timeout_ = 0;  // [ticks] until it is acknowledged, if it arrived; 0: not known
+  unsigned repeats_ = 0;          // of it so far, at most kMostRepeats
 };
 
 }  // namespace tactus

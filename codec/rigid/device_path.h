@@ -52,7 +52,8 @@ class DevicePath {
     const RigidState& state;
     std::int64_t tick = 0;
   };
-  std::optional<StateAt> state_at(std::int64_t tick) const noexcept;  ///< nothing: not known, or no longer.   time O(packets after it)
+  std::optional<StateAt> state_at(
+      std::int64_t tick) const noexcept;  ///< nothing: not known, or no longer.   time O(packets after it)
   /// [position grid] where the device is.   time that of state_at() and RigidPredictor::pose(); of the last 256 ticks that are past, once
   std::optional<std::array<std::int32_t, 3>> at(std::int64_t tick) const noexcept;
   std::uint64_t revision() const noexcept { return revision_; }  ///< changes when the past does

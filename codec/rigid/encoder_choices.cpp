@@ -139,8 +139,8 @@ double ErrorRatio::operator()(const Vec3& moved, const Vec3& turned, double late
     const Touch& touch = touches_[i];
     const Vec3 at_point = moved + cross(turned, touch.lever);
     const Vec3 effective = touch.normal == Vec3{}
-                          ? at_point
-                          : dot(at_point, touch.normal) * touch.normal + touch.depth * cross(turned, touch.normal);
+                               ? at_point
+                               : dot(at_point, touch.normal) * touch.normal + touch.depth * cross(turned, touch.normal);
     const double left = std::max(touch.least, 1 - decay_rate_ * later);
     out = std::max({out, touch.per_metre / left * norm(effective), touch.per_radian * norm(turned)});
   }
@@ -152,7 +152,8 @@ double ErrorRatio::operator()(const Vec3& moved, const Vec3& turned, double late
 namespace {
 
 constexpr double kTau = Acceleration::kFade;
-constexpr double kMargin = 0.6;  // fraction of a bound; the rest is for the error at the update and for what the truth really does
+constexpr double kMargin =
+    0.6;  // fraction of a bound; the rest is for the error at the update and for what the truth really does
 
 /// [s] s of B [s^2].
 double lead(double ratio) noexcept {
@@ -190,7 +191,8 @@ bool stays_inside(const ErrorTrajectory& c, const ErrorRatio& ratio, double dura
 
 std::uint8_t longest_smoothing_exp(const ErrorTrajectory& trajectory, const ErrorRatio& ratio, std::uint32_t tick_rate) noexcept {
   for (int smoothing_exp = usual_smoothing_exp(tick_rate); smoothing_exp > 0; --smoothing_exp)
-    if (stays_inside(trajectory, ratio, static_cast<double>(1u << smoothing_exp) / tick_rate)) return static_cast<std::uint8_t>(smoothing_exp);
+    if (stays_inside(trajectory, ratio, static_cast<double>(1u << smoothing_exp) / tick_rate))
+      return static_cast<std::uint8_t>(smoothing_exp);
   return 0;
 }
 

@@ -323,7 +323,7 @@ Predictor RigidEncoder::chosen(std::uint32_t object, const RigidState& truth, co
 
 /// The true state with the velocities that an update is to send.   pre  it is predicted linearly
 RigidState RigidEncoder::with_look_ahead(const RigidState& truth, std::uint32_t object, const Acceleration::Motion& acceleration,
-                                const ErrorRatio& ratio) const noexcept {
+                                         const ErrorRatio& ratio) const noexcept {
   if (truth_.acceleration() == nullptr || loses_) return truth;
   RigidSample sample = truth_.samples()[object];
   const Acceleration::Motion more = look_ahead_velocity(acceleration, ratio);
@@ -334,7 +334,7 @@ RigidState RigidEncoder::with_look_ahead(const RigidState& truth, std::uint32_t 
 
 /// In the ticks after an update whose offset leads to `kept` now.
 ErrorTrajectory RigidEncoder::error_trajectory(const RigidState& state, const RigidPose& kept, const RigidSample& truth,
-                                     const Acceleration::Motion& acceleration) const noexcept {
+                                               const Acceleration::Motion& acceleration) const noexcept {
   const Pose own = to_pose({state.position, state.rotation}, scene_.grid.position);
   const Acceleration::Motion drift{to_vector(state.velocity, scene_.grid.velocity) - truth.velocity,
                                    to_vector(state.angular_velocity, scene_.grid.angular_velocity) - truth.angular_velocity};
@@ -343,7 +343,7 @@ ErrorTrajectory RigidEncoder::error_trajectory(const RigidState& state, const Ri
 
 /// As much of the pose shown so far as the bounds permit, for as long as they are likely to.
 void RigidEncoder::choose_smoothing(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
-                               const ErrorRatio& ratio) const noexcept {
+                                    const ErrorRatio& ratio) const noexcept {
   const std::uint32_t object = update.object;
   const RigidPose shown = sent_[object].path.pose(predictor_, truth_.tick());
   RigidState tried = update.after.path.state;
@@ -355,7 +355,8 @@ void RigidEncoder::choose_smoothing(Pending& update, CodedUpdate& coded, const A
     const RigidPose kept = smoothed(own, tried, part_kept(offset, tried.retained), tried.tick);
     const Bounds& bounds = bounds_of(object);
     if (!within(bounds.visual, kept, truth_.state(object)) || haptic_ratio_of(object, kept) > bounds.bound_scale) continue;
-    tried.smoothing_exp = longest_smoothing_exp(error_trajectory(tried, kept, truth_.samples()[object], acceleration), ratio, scene_.tick_rate);
+    tried.smoothing_exp =
+        longest_smoothing_exp(error_trajectory(tried, kept, truth_.samples()[object], acceleration), ratio, scene_.tick_rate);
     if (tried.smoothing_exp == 0) return;
     update.after.path.state = tried;
     coded.smoothing_exp = tried.smoothing_exp;
@@ -390,7 +391,8 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
 
 /// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
 /// coarse for the permitted force error, or the distance too long for one update, the nearest point that it can name.
-Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction, const RigidState& signalled) const noexcept {
+Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction,
+                                           const RigidState& signalled) const noexcept {
   const std::uint32_t object = update.object;
   const RigidState& truth = truth_.state(object);
   const std::uint8_t dof = scene_.objects[object].dof;
@@ -447,7 +449,9 @@ Result<Payload> RigidEncoder::code_all(const EncodeRequest<RigidStates>& request
 // ==== what is shared ====
 
 /// Not where a device drives objects: no other receiver has it.
-bool RigidEncoder::uses_common_work() const noexcept { return work_ != nullptr && !driven_ && pending_.size() <= RigidWork::kMostUpdates; }
+bool RigidEncoder::uses_common_work() const noexcept {
+  return work_ != nullptr && !driven_ && pending_.size() <= RigidWork::kMostUpdates;
+}
 
 /// All that the payload depends on.
 void RigidEncoder::make_key(const EncodeRequest<RigidStates>& request) noexcept {

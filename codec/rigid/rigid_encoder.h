@@ -108,11 +108,11 @@ class RigidEncoder {
   RigidState truth_of(std::uint32_t object) const noexcept;
   Predictor chosen(std::uint32_t object, const RigidState& truth, const RigidTriggers& bounds) const noexcept;
   RigidState with_look_ahead(const RigidState& truth, std::uint32_t object, const Acceleration::Motion& acceleration,
-                    const ErrorRatio& ratio) const noexcept;
+                             const ErrorRatio& ratio) const noexcept;
   ErrorTrajectory error_trajectory(const RigidState& state, const RigidPose& kept, const RigidSample& truth,
-                         const Acceleration::Motion& acceleration) const noexcept;
+                                   const Acceleration::Motion& acceleration) const noexcept;
   void choose_smoothing(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
-                   const ErrorRatio& ratio) const noexcept;
+                        const ErrorRatio& ratio) const noexcept;
   Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction, const RigidState& signalled) const noexcept;
   Result<CodedUpdate> code(Pending& update, const EncodeRequest<RigidStates>& request) const noexcept;
   Result<Payload> code_all(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;

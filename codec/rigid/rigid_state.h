@@ -48,10 +48,10 @@ struct RigidState {
   std::array<std::int32_t, 3> velocity{};                  ///< x 2^-velocity m/s
   std::array<std::int32_t, 3> angular_velocity{};          ///< x 2^-angular_velocity rad/s, world frame
   Predictor predictor = Predictor::linear;
-  std::uint8_t smoothing_exp = 0;    ///< clients pass over to this path within 2^smoothing_exp ticks; 0: at once (curve.h)
-  std::uint8_t retained = 0;    ///< ... and begin with 16, 15, 12 or 8 sixteenths of what they were off it
-  std::uint8_t lod = 0;     ///< level of detail: bounds are 2^lod times as wide; kOutOfInterest: none holds
-  DrivenContact contact{};  ///< of the newest update that was driven
+  std::uint8_t smoothing_exp = 0;  ///< clients pass over to this path within 2^smoothing_exp ticks; 0: at once (curve.h)
+  std::uint8_t retained = 0;       ///< ... and begin with 16, 15, 12 or 8 sixteenths of what they were off it
+  std::uint8_t lod = 0;            ///< level of detail: bounds are 2^lod times as wide; kOutOfInterest: none holds
+  DrivenContact contact{};         ///< of the newest update that was driven
   friend bool operator==(const RigidState&, const RigidState&) = default;
 };
 

@@ -65,7 +65,8 @@ void append_to(std::vector<std::uint32_t>& key, const RigidState& s) noexcept {
   for (const std::int32_t v : s.rotation) add(v);
   for (const std::int32_t v : s.velocity) add(v);
   for (const std::int32_t v : s.angular_velocity) add(v);
-  add(static_cast<std::int64_t>(s.predictor) | s.smoothing_exp << 8 | s.retained << 16 | (s.contact.is_held ? 1 << 24 : 0) | s.lod << 25);
+  add(static_cast<std::int64_t>(s.predictor) | s.smoothing_exp << 8 | s.retained << 16 | (s.contact.is_held ? 1 << 24 : 0) |
+      s.lod << 25);
   for (const std::int32_t v : s.contact.point) add(v);
   for (const std::int32_t v : s.contact.normal) add(v);
   add(s.contact.drag);

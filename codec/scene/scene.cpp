@@ -181,13 +181,13 @@ Result<SharedScene> Scene::create(SceneSpec&& spec, const MeshSupport* meshes, c
 }
 
 std::optional<std::uint32_t> Scene::find(std::string_view name) const noexcept {
-  const auto place_in = [name](const auto& all) -> std::optional<std::uint32_t> {
+  const auto index_in = [name](const auto& all) -> std::optional<std::uint32_t> {
     for (std::uint32_t i = 0; i < all.size(); ++i)
       if (all[i].name == name) return i;
     return std::nullopt;
   };
-  const auto rigid = place_in(objects);
-  return rigid ? rigid : place_in(deformables);
+  const auto rigid = index_in(objects);
+  return rigid ? rigid : index_in(deformables);
 }
 
 std::uint64_t state_bytes(const SceneSpec& spec) noexcept {

@@ -79,7 +79,7 @@ struct SceneSpec {
   GridExponents grid;
   std::uint16_t max_extrapolation = 2000;     ///< ticks; an object without updates stops moving after so long
   std::uint8_t baseline_span = 1;             ///< how many of the newest states a receiver keeps as baselines, 1..64
-  bool is_smoothed = false;                      ///< updates of rigid objects signal how clients smooth their errors (rigid/curve.h)
+  bool is_smoothed = false;                   ///< updates of rigid objects signal how clients smooth their errors (rigid/curve.h)
   std::vector<RigidObject> objects;           ///< order is the wire order
   std::vector<DeformableObject> deformables;  ///< a stream without any spends no byte on them
   std::optional<LoadSpec> loads;              ///< of the objects that can move; none: a stream spends no byte on them

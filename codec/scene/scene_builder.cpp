@@ -305,8 +305,9 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
                     "a world of " + figure(metres) + " m: it is above 0 m and below " + figure(reach_of(kCoarsestGrid)) + " m");
     spec.grid = *grid;
     const bool moves = std::ranges::any_of(taken.rigid_, [](const Rigid& object) { return object.options.dof != Dof::none; });
-    const double bound =
-        taken.declared_bounds_ ? finest_bound(taken.declared_bounds_->rigid, taken.declared_bounds_->deformables, moves, !taken.deformables_.empty()) : 0;
+    const double bound = taken.declared_bounds_ ? finest_bound(taken.declared_bounds_->rigid, taken.declared_bounds_->deformables,
+                                                               moves, !taken.deformables_.empty())
+                                                : 0;
     if (bound > 0 && bound < std::ldexp(kSteps, -static_cast<int>(spec.grid.position)))
       return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {}, too_large(metres, bound));
   }

@@ -17,8 +17,8 @@ namespace tactus {
 /// How rigid objects are coded. What is declared of it decides how a sender codes, and what clients show.
 enum class RigidProfile : std::uint8_t {
   thesis,  ///< linear dead reckoning from true velocities; clients jump to an update, or smooth what they show (Interpolation)
-  main,  ///< updates send look-ahead velocities, to last longer, and how clients pass over to them: what is
-         ///< shown and rendered does not jump, and the bounds hold meanwhile
+  main,    ///< updates send look-ahead velocities, to last longer, and how clients pass over to them: what is
+           ///< shown and rendered does not jump, and the bounds hold meanwhile
 };
 
 /// A box or anything like it that a client's device pushes or holds.
@@ -116,7 +116,8 @@ class SceneBuilder {
   /// twice the distance, and not at all of those beyond `reach`. For worlds that are larger than what one sees of them.
   SceneBuilder& interest(double full, double reach);
   /// Declare the bounds that hold at a client that gets every packet.
-  SceneBuilder& declare_bounds(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
+  SceneBuilder& declare_bounds(const RigidTriggers& rigid, const DeformableThresholds& deformables,
+                               const LoadThresholds& loads = {});
 
   /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface, stiffness or world does not fit its grid; those of
   ///      Scene::create

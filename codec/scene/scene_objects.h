@@ -42,7 +42,7 @@ struct RigidTriggers {
   double visual_rotation = 2.0 * std::numbers::pi / 180.0;  ///< [rad]
   HapticRule haptic = HapticRule::isotropic;
   double weber_fraction = 0.04;                            ///< p, traffic control parameter
-  double perceptual_fraction = 1;                             ///< with `perceptual`: p is this times weber_fraction_at()
+  double perceptual_fraction = 1;                          ///< with `perceptual`: p is this times weber_fraction_at()
   double cone_angle = 2.1 * std::numbers::pi / 180.0;      ///< alpha_max [rad]
   double fixed_position = 0.0015;                          ///< [m]
   double fixed_rotation = 2.0 * std::numbers::pi / 180.0;  ///< [rad]

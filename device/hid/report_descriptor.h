@@ -23,13 +23,14 @@ inline constexpr std::uint32_t kMultiAxisController = 0x1'0008;
 
 /// An axis or a button of an input report. Usages hold their page in the upper half.
 struct Field {
-  std::uint32_t usage = 0;                           ///< kAxisX..kAxisRz, or a button from 1 to kMostButtons
-  std::uint32_t application = 0;                     ///< usage of the collection around it, such as kMultiAxisController
-  std::uint8_t report = 0;                           ///< id, the first byte of its report; 0: reports have none
-  std::uint32_t bit = 0;                             ///< where it begins behind the id; the lowest bit comes first
-  std::uint8_t size = 0;                             ///< 1..32 bits
-  std::int64_t logical_low = 0, logical_high = 0;    ///< what stands in the report; of an axis low < high
-  std::int64_t physical_low = 0, physical_high = 0;  ///< what that means, times 10^exponent units; as logical, if it is not stated
+  std::uint32_t usage = 0;                         ///< kAxisX..kAxisRz, or a button from 1 to kMostButtons
+  std::uint32_t application = 0;                   ///< usage of the collection around it, such as kMultiAxisController
+  std::uint8_t report = 0;                         ///< id, the first byte of its report; 0: reports have none
+  std::uint32_t bit = 0;                           ///< where it begins behind the id; the lowest bit comes first
+  std::uint8_t size = 0;                           ///< 1..32 bits
+  std::int64_t logical_low = 0, logical_high = 0;  ///< what stands in the report; of an axis low < high
+  std::int64_t physical_low = 0,
+               physical_high = 0;  ///< what that means, times 10^exponent units; as logical, if it is not stated
   std::uint32_t unit = 0;
   std::int8_t exponent = 0;  ///< -8..7
 

@@ -30,8 +30,9 @@ tl::expected<Runtime, Diagnostic> Runtime::load(const std::string& path) {
   const std::string name = path.empty() ? kLibrary : path;
   auto library = SharedLibrary::load(name);
   if (!library)
-    return refuse(name, library.error(),
-                  "install the vendor's runtime (OpenHaptics and the driver of the device), or name the library with --tune runtime=FILE");
+    return refuse(
+        name, library.error(),
+        "install the vendor's runtime (OpenHaptics and the driver of the device), or name the library with --tune runtime=FILE");
   Runtime runtime;
   library->find("hdInitDevice", runtime.init_device);
   library->find("hdDisableDevice", runtime.disable_device);

@@ -59,7 +59,8 @@ class Key {
   std::string_view name() const noexcept { return {name_.data(), name_size_}; }
   std::span<const std::uint8_t, kSecret> secret() const noexcept { return secret_; }
   static bool is_name(std::string_view text) noexcept;
-  friend bool operator==(const Key& a, const Key& b) noexcept;  ///< of secrets in a time that does not depend on where they differ
+  friend bool operator==(const Key& a,
+                         const Key& b) noexcept;  ///< of secrets in a time that does not depend on where they differ
 
   Key(Key&& other) noexcept;
   Key& operator=(Key&& other) noexcept;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kFirstRepeat = 250'000, kNextRepeat = 500'000;  // [us] after a flight was sent
 constexpr unsigned kMostRepetitions = 6;                                // of a flight, then the handshake begins anew
-constexpr std::uint64_t kTimeout = 10'000'000;                         // [us] for the whole handshake
+constexpr std::uint64_t kTimeout = 10'000'000;                          // [us] for the whole handshake
 
 }  // namespace
 

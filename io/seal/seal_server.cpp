@@ -14,8 +14,7 @@
 namespace tactus::seal {
 namespace {
 
-constexpr std::uint64_t kTimeout =
-    10'000'000;                                 // [us] for a handshake; then for the session in it; for repeating the last flight
+constexpr std::uint64_t kTimeout = 10'000'000;  // [us] for a handshake; then for the session in it; for repeating the last flight
 constexpr std::uint64_t kRepeatEvery = 50'000;  // [us] at most, also of alerts
 constexpr int kRepetitions = 3;                 // of what ends an association
 constexpr std::size_t kInbox = 4;               // datagrams of a handshake that wait

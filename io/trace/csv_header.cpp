@@ -209,7 +209,8 @@ void Finder::take_length_unit(std::string_view field, std::string_view next) {
   if (word == std::string_view::npos || word == 0 || (field[word - 1] | 0x20) != 'u') return;
   const std::size_t colon = field.find_first_of(":=", word);
   const std::string_view stated = colon == std::string_view::npos || colon + 1 == field.size() ? next : field.substr(colon + 1);
-  if (const auto unit = unit_of(stated); unit && unit->dimension == CsvDimension::length) header_.length_unit = trim_field(stated);
+  if (const auto unit = unit_of(stated); unit && unit->dimension == CsvDimension::length)
+    header_.length_unit = trim_field(stated);
 }
 
 /// Lines ahead of the names. Of what they declare, the unit of lengths is known.

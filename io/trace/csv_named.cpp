@@ -205,7 +205,7 @@ void NamedPlanner::plan_time() {
   if (columns.size() > 2) return mistake(Errc::malformed, "R-CSV-2", mapping_.time, "A time has one column, or two.");
   plan_.time = column(columns[0]);
   plan_.time_is_stated = !mapping_.time_unit.empty() || unit_in_name(plan_.names[*plan_.time], CsvDimension::time).unit ||
-                       (!header_.units.empty() && unit_of(header_.units[*plan_.time]));
+                         (!header_.units.empty() && unit_of(header_.units[*plan_.time]));
   if (mapping_.time_unit == kTickUnit) {
     if (mapping_.tick_rate == 0) return mistake(Errc::invalid_argument, "R-CSV-7", mapping_.time, "Give --tick-rate HZ.");
     plan_.time_unit = std::llround(1e9 / mapping_.tick_rate);
@@ -315,7 +315,7 @@ void NamedPlanner::plan_euler(const CsvQuantities& q, CsvChannel& channel) {
     if (columns[i] == kZeroColumn && find(columns[i]).empty()) continue;  // that angle is 0
     const std::size_t found = column(columns[i]);
     const bool is_stated = !mapping_.angle_unit.empty() || unit_in_name(plan_.names[found], CsvDimension::angle).unit ||
-                         (!header_.units.empty() && unit_of(header_.units[found]));
+                           (!header_.units.empty() && unit_of(header_.units[found]));
     if (!is_stated)
       mistake(Errc::invalid_argument, "R-CSV-10", columns[i], "Say whether the angles are degrees: --angle-unit deg or rad.");
     channel.rotation[to] = {found, scale_of(found, CsvDimension::angle)};

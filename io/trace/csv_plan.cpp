@@ -122,7 +122,9 @@ bool Planner::bind_sense(const std::string& path, const std::array<CsvColumn<Use
 /// One force at least, with all of its columns. The server's stands for the rendered one where that is not known.
 void Planner::plan_forces(const std::string& path) {
   const bool has_server = has_any(path, kServerForceColumns), has_rendered = !has_server || has_any(path, kForceColumns);
-  plan_.info.users.back().forces = !has_server ? RecordedForces::rendered : has_rendered ? RecordedForces::both : RecordedForces::server;
+  plan_.info.users.back().forces = !has_server    ? RecordedForces::rendered
+                                   : has_rendered ? RecordedForces::both
+                                                  : RecordedForces::server;
   bind_user(all_columns(path, has_rendered ? kForceColumns : kServerForceColumns), kForceColumns);
   if (has_server) bind_user(all_columns(path, kServerForceColumns), kServerForceColumns);
 }

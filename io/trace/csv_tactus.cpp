@@ -27,7 +27,9 @@ class Importer {
       : mapping_(mapping), plan_(std::move(plan)), out_path_(std::move(out_path)) {}
 
   Result<CsvImport> run(CsvReader& reader);
-  Diagnostic located(const Error& error) const { return {.error = error, .line = line_, .detail = location_of_field(column_, text_)}; }
+  Diagnostic located(const Error& error) const {
+    return {.error = error, .line = line_, .detail = location_of_field(column_, text_)};
+  }
   bool has_output() const noexcept { return writer_.has_value(); }
 
  private:

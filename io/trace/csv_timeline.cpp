@@ -286,7 +286,8 @@ bool CsvTimeline::sample_at(std::size_t channel, std::int64_t tick, RigidSample&
   using Relation = SampleTrack<Instant>::Relation;
   if (track.relation() == Relation::on) return true;
   if (track.relation() == Relation::between) largest_gap_ = std::max(largest_gap_, track.span());
-  const bool is_border = track.relation() == Relation::before || (ended_ && track.next() == nullptr);  // else the next is too far away
+  const bool is_border =
+      track.relation() == Relation::before || (ended_ && track.next() == nullptr);  // else the next is too far away
   const bool is_known = track.is_known() || (is_border && track.is_held());
   made_ += is_known;
   return is_known;

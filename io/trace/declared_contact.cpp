@@ -31,8 +31,8 @@ Result<ContactDeclarations> ContactDeclarations::create(const TraceInfo& info, s
     const auto index = static_cast<std::uint32_t>(user - info.users.begin());
     if (std::ranges::find(out.declared_, index, &Declared::user) != out.declared_.end())
       return fail(Errc::invalid_argument, "R-API-5");
-    out.declared_.push_back({index, static_cast<std::uint32_t>(object - info.objects.begin()), user->forces != RecordedForces::rendered,
-                             of.stiffness, of.kind, of.at});
+    out.declared_.push_back({index, static_cast<std::uint32_t>(object - info.objects.begin()),
+                             user->forces != RecordedForces::rendered, of.stiffness, of.kind, of.at});
   }
   return out;
 }

@@ -35,7 +35,7 @@ struct TraceDeformable {
 enum class RecordedForces : std::uint8_t {
   both,
   rendered,  ///< UserSample::server_force is 0
-  server,  ///< UserSample::force is the server's
+  server,    ///< UserSample::force is the server's
 };
 
 struct TraceUser {

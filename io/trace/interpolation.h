@@ -11,7 +11,9 @@
 namespace tactus {
 
 /// in  fraction  0 at `a`, 1 at `b`
-inline Vec3 mixed(const Vec3& a, const Vec3& b, double fraction) noexcept { return a == b || fraction == 0 ? a : a + fraction * (b - a); }
+inline Vec3 mixed(const Vec3& a, const Vec3& b, double fraction) noexcept {
+  return a == b || fraction == 0 ? a : a + fraction * (b - a);
+}
 
 /// The shorter arc, at constant speed.   pre  of unit length, or nearly
 inline Quat mixed(const Quat& a, const Quat& b, double fraction) noexcept {

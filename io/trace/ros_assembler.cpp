@@ -265,7 +265,8 @@ Result<bool> RosAssembler::take(mcap::Reader& mcap) {
   while (true) {
     if (const auto sample = order_.take()) {
       if (sample->time < released_) {
-        notes_.add(survey_.location_of(sample->source), "came too late to be sorted: left out", survey_.text_of_time(sample->log));
+        notes_.add(survey_.location_of(sample->source), "came too late to be sorted: left out",
+                   survey_.text_of_time(sample->log));
         continue;
       }
       released_ = sample->time;
@@ -374,7 +375,8 @@ RigidSample RosAssembler::sample_of(const Object& object) {
   if (!twist) return placed;
   const std::uint32_t space = samples_.sources()[*object.twist].space;
   Quat turn = frames_->at(space, twist_track.frame()).pose.rotation;
-  const bool is_of_body = source.is_odometry && twist_track.frame() != track.frame() && !samples_.link_of(space, twist_track.frame());
+  const bool is_of_body =
+      source.is_odometry && twist_track.frame() != track.frame() && !samples_.link_of(space, twist_track.frame());
   if (is_of_body) turn = placed.pose.rotation;
   placed.velocity = rotate(turn, twist->linear);
   placed.angular_velocity = rotate(turn, twist->angular);

@@ -202,8 +202,8 @@ void RosSurvey::find_start() {
     log_start_ = std::min(log_start_, facts_[i].log.first());
     const auto timing = clock_.timing(i, facts_);
     gaps_[i] = static_cast<std::uint64_t>(
-        1e9 *
-        (options_.gap > 0 ? options_.gap : std::clamp(kGapsOfMedian * std::max(timing.median, timing.period), kLeastGap, kMostGap)));
+        1e9 * (options_.gap > 0 ? options_.gap
+                                : std::clamp(kGapsOfMedian * std::max(timing.median, timing.period), kLeastGap, kMostGap)));
     const std::uint64_t first =
         clock_.takes_stamp(i) ? facts_[i].stamps.first() + static_cast<std::uint64_t>(clock_.offset(i)) : facts_[i].log.first();
     start_ = std::min(start_, first);
@@ -292,15 +292,16 @@ void RosSurvey::note_rate(ReadNotes& notes) const {
   const double length = clock_.takes_stamp(densest_) ? facts_[densest_].stamps.length() : facts_[densest_].log.length();
   const double expected = length * rate + 1;
   if (static_cast<double>(facts_[densest_].samples) < 0.5 * expected)
-    notes.add(location_of(densest_), "more than half of the time nothing is recorded: check the unit of the times, or give --rate");
+    notes.add(location_of(densest_),
+              "more than half of the time nothing is recorded: check the unit of the times, or give --rate");
   for (std::uint32_t i = 0; i < facts_.size(); ++i) {
     const auto own = clock_.timing(i, facts_);
     if (!moving_[i] || !(own.period > 0) || std::abs(tick_rate_ * own.period - 1) <= 0.1) continue;
     const Kind kind = samples_.sources()[i].kind;
     const bool is_curve = (kind == Kind::pose || kind == Kind::link) && tick_rate_ * own.period > 1.5;
     notes.add(location_of(i), text(1 / own.period, "%.4g") + " samples per second are interpolated to " +
-                               std::to_string(tick_rate_) + " ticks" +
-                               (is_curve ? ", on parabolas where the motion bends alike at neighbours, else on lines" : ""));
+                                  std::to_string(tick_rate_) + " ticks" +
+                                  (is_curve ? ", on parabolas where the motion bends alike at neighbours, else on lines" : ""));
   }
 }
 
@@ -309,14 +310,16 @@ void RosSurvey::note_source(std::uint32_t source, ReadNotes& notes) const {
   const Kind kind = samples_.sources()[source].kind;
   for (const auto& [key, seen] : faults_)
     if (key.first == source)
-      notes.add(location_of(source), std::string("a sample is missing: ") + text_of(key.second), text_of_time(seen.log), seen.count);
+      notes.add(location_of(source), std::string("a sample is missing: ") + text_of(key.second), text_of_time(seen.log),
+                seen.count);
   if (const auto found = ignored_.find(source); found != ignored_.end())
     notes.add(location_of(source), kind == Kind::force ? "torques are ignored" : "covariances are ignored");
   if (const auto copies = samples_.copies().find(source); copies != samples_.copies().end())
     notes.add(location_of(source), "a sample with the stamp and the value of the one before: left out", {}, copies->second);
   if (facts.swings())
-    notes.add(location_of(source), "its samples go to and fro between two positions, up to " + text(facts.return_distance, "%.3g") +
-                                    " m apart, as of two publishers: let each have a topic of its own");
+    notes.add(location_of(source), "its samples go to and fro between two positions, up to " +
+                                       text(facts.return_distance, "%.3g") +
+                                       " m apart, as of two publishers: let each have a topic of its own");
   if (facts.samples == 0) return;
   if (!moving_[source]) return note_rest(source, notes);
   const GapStatistics& times = clock_.takes_stamp(source) ? facts.stamps : facts.log;
@@ -334,7 +337,8 @@ void RosSurvey::note_source(std::uint32_t source, ReadNotes& notes) const {
 void RosSurvey::note_rest(std::uint32_t source, ReadNotes& notes) const {
   const SourceFacts& facts = facts_[source];
   if (facts.log.first() > log_start_ + gaps_[source])
-    notes.add(location_of(source), std::string("is published ") + text_of_time(facts.log.first()) + "; it holds from the beginning");
+    notes.add(location_of(source),
+              std::string("is published ") + text_of_time(facts.log.first()) + "; it holds from the beginning");
   if (facts.moved > 0 || facts.turned > 0) notes.add(location_of(source), "is published with another value; it jumps then");
 }
 
@@ -373,7 +377,7 @@ void RosSurvey::note_frames(ReadNotes& notes) {
     const auto link = samples_.link_of(sources[i].space, facts_[i].first->frame);
     if (link && sources[*link].child != facts_[i].first->frame)
       notes.add(location_of(i), "frame '" + samples_.name(facts_[i].first->frame) + "' is taken for '" +
-                                 samples_.name(sources[*link].child) + "' of " + sources[*link].topic);
+                                    samples_.name(sources[*link].child) + "' of " + sources[*link].topic);
   }
   std::map<std::string, std::vector<std::uint32_t>> roots;  // frames that are taken for the world
   for (std::uint32_t i = 0; i < sources.size(); ++i) {
@@ -385,14 +389,14 @@ void RosSurvey::note_frames(ReadNotes& notes) {
     if (sources[i].kind == Kind::link && !hangs) roots[name].push_back(i);
     if (sources[i].kind == Kind::twist && !hangs)
       notes.add(location_of(i), "frame '" + name + "' is in no tree: the twist is taken " +
-                                 (sources[i].is_odometry ? "in the frame of the pose" : "in the world"));
+                                    (sources[i].is_odometry ? "in the frame of the pose" : "in the world"));
   }
   for (std::uint32_t i = 0; i < sources.size(); ++i) {
     if (sources[i].kind != Kind::force || facts_[i].samples == 0) continue;
     const std::uint32_t frame = facts_[i].first->frame;
     if (roots.contains(samples_.name(frame)) || samples_.is_in_tree(sources[i].space, frame)) continue;
     notes.add(location_of(i), "frame '" + samples_.name(frame) +
-                               "' is in no tree: the force is not turned, and acts at the topic beside, if there is one");
+                                  "' is in no tree: the force is not turned, and acts at the topic beside, if there is one");
   }
   for (const auto& [name, which] : roots) {
     if (roots.size() == 1) {

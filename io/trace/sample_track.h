@@ -243,7 +243,8 @@ const SampleCurve& SampleTrack<Time>::curve() noexcept {
   if (first != at_ && last != at_ + 1) {
     const Twist from = chord(first, at_), to = chord(at_ + 1, last);
     curve_.linear = SampleCurve::part(from.linear, motion.linear, to.linear, time(first, at_), curve_.span, time(at_ + 1, last));
-    curve_.angular = SampleCurve::part(from.angular, motion.angular, to.angular, time(first, at_), curve_.span, time(at_ + 1, last));
+    curve_.angular =
+        SampleCurve::part(from.angular, motion.angular, to.angular, time(first, at_), curve_.span, time(at_ + 1, last));
   }
   has_curve_ = true;
   return curve_;

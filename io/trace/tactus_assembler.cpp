@@ -137,7 +137,7 @@ Result<void> TactusAssembler::read_rest(mcap::Reader& mcap) {
 
 /// None: the channels say that neither is known.
 std::optional<RecordedForces> recorded_forces(const std::map<std::string_view, const mcap::Channel*>& by_topic,
-                                        const std::string& user) {
+                                              const std::string& user) {
   const auto is_known = [&](const char* force) {
     const auto found = by_topic.find("/users/" + user + force);
     return found == by_topic.end() || entry(found->second->metadata, "known") != "no";

@@ -58,7 +58,8 @@ double rms(const std::vector<double>& values) {
 
 double over(double value, double reference) { return reference > 0 ? value / reference - 1 : NAN; }
 
-DelayNumbers numbers(const DelayEffect& rendered, const DelayEffect& played, std::vector<double> away, std::vector<double> apart) {
+DelayNumbers numbers(const DelayEffect& rendered, const DelayEffect& played, std::vector<double> away,
+                     std::vector<double> apart) {
   return {.mean = static_cast<float>(over(rendered.mean, rendered.reference_mean)),
           .peak = static_cast<float>(over(rendered.peak, rendered.reference_peak)),
           .outside = static_cast<float>(rendered.outside),
@@ -89,9 +90,9 @@ tl::expected<DelayResult, Diagnostic> run_point(const Scene& scene, const DelayP
     one.paths = &reference.paths;
     TACTUS_TRY(const DelayRun played, run_delayed(scene, one));
     for (std::size_t i = 0; i < scene.users.size(); ++i)
-      out[c][i] =
-          numbers(effect_of(rendered.users[i], reference.users[i], kWeber), effect_of(played.users[i], reference.users[i], kWeber),
-                  seen_away(played.users[i], reference.users[i]), seen_apart(scene, played));
+      out[c][i] = numbers(effect_of(rendered.users[i], reference.users[i], kWeber),
+                          effect_of(played.users[i], reference.users[i], kWeber), seen_away(played.users[i], reference.users[i]),
+                          seen_apart(scene, played));
   }
   return out;
 }

@@ -221,7 +221,8 @@ class World {
   Result<void> join() {
     for (std::uint64_t number = 0; number < of_.clients; ++number) {
       TACTUS_TRY(auto client, SessionClient::create({.role = of_.role, .limits = kLimits}));
-      users_.push_back({std::move(client), DelayLine(of_, 1000 + 2 * number + of_.seed), DelayLine(of_, 1001 + 2 * number + of_.seed)});
+      users_.push_back(
+          {std::move(client), DelayLine(of_, 1000 + 2 * number + of_.seed), DelayLine(of_, 1001 + 2 * number + of_.seed)});
       User& user = users_.back();
       if (of_.reach > 0) user.client.set_viewpoint(eyes(number));
       user.client.open(now_, number + 1);

@@ -15,7 +15,7 @@ struct ScaleCase {
   std::uint32_t objects = 1000, moving = 10;  ///< of the objects
   std::int64_t ticks = 1000;                  ///< that are measured, after two seconds
   std::uint64_t seed = 1;
-  double loss = 0;             ///< fraction of datagrams, each way
+  double loss = 0;               ///< fraction of datagrams, each way
   std::uint64_t delay = 10'000;  ///< [us]
   Role role = Role::observer;
   bool names_moved = false;  ///< the server is given the objects that have moved

@@ -176,7 +176,7 @@ class Judge {
   std::vector<PlayedShapes> shapes_;
   std::vector<Pose> shown_;
   std::vector<double> worst_;  // [bounds] of each tick
-  double bound_scale_ = 0;        // sum
+  double bound_scale_ = 0;     // sum
   std::int64_t last_ = -1, behind_ = 0, looks_ = 0;
   std::int64_t run_begin_ = -1, longest_ = 0, run_time_ = 0, runs_ = 0;  // [ticks]; -1: in no run
 };

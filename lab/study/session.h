@@ -52,7 +52,7 @@ struct SessionResult {
   double behind = 0;                                               ///< [s] the tick shown, on average
   Traffic down{}, up{};
   BoundScaling bound_scaling{};
-  double mean_bound_scale = 1;                           ///< over all ticks judged
+  double mean_bound_scale = 1;                        ///< over all ticks judged
   double error_median = 0, error_p95 = 0, worst = 0;  ///< largest error of a rigid object in a tick, as a multiple of its bound
   double seconds = 0;
   double recovery = 0;     ///< [s] after the last outage until the client has a state sent after it; 0: there was none

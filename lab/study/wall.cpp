@@ -10,7 +10,7 @@ namespace tactus::sim::study {
 namespace {
 
 constexpr double kStep = 1e-6;      // [m] per sample
-constexpr int kDepth = 1000;          // samples into the wall
+constexpr int kDepth = 1000;        // samples into the wall
 constexpr int kReversals = 10'000;  // of the fast motion
 constexpr int kSamples = 100'000;   // of a device that was let go
 constexpr double kFar = 1e3;        // [m]

@@ -54,7 +54,9 @@ MeshProxy::MeshProxy(const MeshProxyOptions& options, double extent) noexcept
 Sweep MeshProxy::towards(const Vec3& goal) const noexcept { return {centre_, goal - centre_, distance(), slack_}; }
 
 /// Motion below the slack is ignored, so that a held proxy does not creep.
-bool MeshProxy::lets_move(const SurfaceHit& hit, const Vec3& displacement) const noexcept { return hit.rest * norm(displacement) > slack_; }
+bool MeshProxy::lets_move(const SurfaceHit& hit, const Vec3& displacement) const noexcept {
+  return hit.rest * norm(displacement) > slack_;
+}
 
 /// Test the triangles that held the proxy last first. One that allows no motion decides, unless a point meets it at an edge: the face
 /// beside the edge may be what carries the point.
@@ -249,7 +251,7 @@ ProxyTouch MeshProxy::move(const Vec3& probe, std::span<const Vec3> vertices, co
 }
 
 ProxyTouch MeshProxy::move_to(const Vec3& probe, const InsideTest& inside, std::span<const Vec3> vertices,
-                            const AabbTree& tree) noexcept {
+                              const AabbTree& tree) noexcept {
   if (!is_finite(probe)) return move(probe_, vertices, tree);
   centre_ = probe;
   placed_ = true;

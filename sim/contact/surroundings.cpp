@@ -96,7 +96,8 @@ TriangleCache::Plane TriangleCache::plane_before(const Vec3& n, const Corners& v
 bool TriangleCache::clears(const Plane& plane, const Sweep& sphere, double limit) noexcept {
   const double contact = sphere.radius + 0.5 * sphere.slack;
   const double start = plane.x * sphere.from.x + plane.y * sphere.from.y + plane.z * sphere.from.z - plane.offset;
-  const double end = start + limit * (plane.x * sphere.displacement.x + plane.y * sphere.displacement.y + plane.z * sphere.displacement.z);
+  const double end =
+      start + limit * (plane.x * sphere.displacement.x + plane.y * sphere.displacement.y + plane.z * sphere.displacement.z);
   return std::min(start, end) > contact;
 }
 

@@ -87,9 +87,9 @@ inline TrianglePoint closest_on_triangle(const Vec3& p, const Corners& v) noexce
 
 /// A moving sphere.
 struct Sweep {
-  Vec3 from, displacement;     ///< [m] start of the centre, and its displacement
-  double radius = 0;  ///< [m] > 0
-  double slack = 0;   ///< [m] > 0: distance from contact at which it is to come to rest
+  Vec3 from, displacement;  ///< [m] start of the centre, and its displacement
+  double radius = 0;        ///< [m] > 0
+  double slack = 0;         ///< [m] > 0: distance from contact at which it is to come to rest
 };
 
 /// Where a moving sphere first touches a triangle.

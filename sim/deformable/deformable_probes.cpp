@@ -70,10 +70,12 @@ ProxyTouch DeformableProbes::move(User& user, std::uint32_t object, const SeenSu
                      : direct.move_to(device, seen.inside, seen.vertices, seen.tree);
 }
 
-Touch DeformableProbes::result(std::optional<std::uint32_t> object, const ProxyTouch& proxy_touch, const Vec3& device) const noexcept {
+Touch DeformableProbes::result(std::optional<std::uint32_t> object, const ProxyTouch& proxy_touch,
+                               const Vec3& device) const noexcept {
   Touch out{.contact = {}, .proxy = device, .force = {}};
   if (!object) return out;
-  out.surface = SurfaceContact{*object, proxy_touch.triangle, proxy_touch.weights, proxy_touch.proxy, proxy_touch.normal, stiffness_[*object]};
+  out.surface = SurfaceContact{*object,           proxy_touch.triangle, proxy_touch.weights,
+                               proxy_touch.proxy, proxy_touch.normal,   stiffness_[*object]};
   out.force = stiffness_[*object] * (proxy_touch.proxy - device);
   return out;
 }

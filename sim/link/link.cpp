@@ -40,8 +40,8 @@ double burst_begin(double loss, double burst) noexcept { return loss >= 1 ? 1 : 
 
 bool are_valid(const LinkOptions& o) noexcept {
   return is_time(o.delay) && is_time(o.jitter) && is_time(o.gamma_mean) && is_time(o.gamma_deviation) && is_time(o.gamma_piece) &&
-         o.gamma_piece >= 1000 && (o.gamma_mean > 0 || o.gamma_deviation == 0) && is_time(o.held_back_by) && is_fraction(o.loss) &&
-         is_fraction(o.duplicates) && is_fraction(o.held_back) && o.burst >= 1 && std::isfinite(o.burst) &&
+         o.gamma_piece >= 1000 && (o.gamma_mean > 0 || o.gamma_deviation == 0) && is_time(o.held_back_by) &&
+         is_fraction(o.loss) && is_fraction(o.duplicates) && is_fraction(o.held_back) && o.burst >= 1 && std::isfinite(o.burst) &&
          burst_begin(o.loss, o.burst) <= 1 && o.rate >= 0 && std::isfinite(o.rate) && are_in_order(o.recorded) &&
          are_in_order(o.outages);
 }

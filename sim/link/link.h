@@ -41,9 +41,9 @@ class Network {
   /// What a user's client has to show now.
   struct View {
     Receiver* receiver = nullptr;
-    std::int64_t tick = -1;   ///< -1: nothing has come yet
-    double force_fraction = 1;   ///< of a force that may be rendered: less than 1 while the data are old
-    std::uint32_t delay = 0;  ///< [ticks] age of what is shown, as an answer to the own device; 0 while it is not known
+    std::int64_t tick = -1;     ///< -1: nothing has come yet
+    double force_fraction = 1;  ///< of a force that may be rendered: less than 1 while the data are old
+    std::uint32_t delay = 0;    ///< [ticks] age of what is shown, as an answer to the own device; 0 while it is not known
   };
   virtual View view(std::size_t user) noexcept = 0;
 };

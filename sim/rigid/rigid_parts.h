@@ -109,7 +109,7 @@ struct Body {
   Inertia inertia;
   Push push, pushed;      // of this step, and of the one before
   Push applied;           // of this step, with half of what begins or ends
-  double fraction = 1;       // of the step in which forces act: half of it in the first of a motion
+  double fraction = 1;    // of the step in which forces act: half of it in the first of a motion
   std::size_t mover = 0;  // its number among those that move
   double reach = 0;       // [m] of its corners from its centre
   bool awake = false;

@@ -208,7 +208,8 @@ std::uint32_t read_watched(TomlReader& in, const toml::table& table, const Scene
 
 SceneUser read_user(TomlReader& in, const toml::table& table, const Scene& scene) {
   const std::string path = "user";
-  in.allow(table, path, {"name", "grip", "duration_scale", "tremor", "variation", "scatter", "object", "goal", "start", "device", "path"});
+  in.allow(table, path,
+           {"name", "grip", "duration_scale", "tremor", "variation", "scatter", "object", "goal", "start", "device", "path"});
   SceneUser user;
   user.name = in.name(table, path);
   user.grip = static_cast<Grip>(in.word(table, path, "grip", {"loose", "normal", "firm"}, "normal"));

@@ -124,13 +124,13 @@ struct PathPhase {
 struct SceneUser {
   std::string name;
   Grip grip = Grip::normal;
-  double duration_scale = 1;           ///< times the duration of every phase: 0.5 is twice as fast
-  double tremor = 0;         ///< [m] RMS per axis of the free hand, 8-12 Hz
-  double variation = 0;      ///< fraction by which hand, speed and targets vary with the seed
-  double scatter = 0;        ///< [m] by which targets vary with the seed
-  std::uint32_t object = 0;  ///< the object that the user looks at: index over the objects, then the msds, then the deformables
-  Vec3 goal;                 ///< [m] target position of that object
-  Vec3 start;                ///< [m] of the probe
+  double duration_scale = 1;  ///< times the duration of every phase: 0.5 is twice as fast
+  double tremor = 0;          ///< [m] RMS per axis of the free hand, 8-12 Hz
+  double variation = 0;       ///< fraction by which hand, speed and targets vary with the seed
+  double scatter = 0;         ///< [m] by which targets vary with the seed
+  std::uint32_t object = 0;   ///< the object that the user looks at: index over the objects, then the msds, then the deformables
+  Vec3 goal;                  ///< [m] target position of that object
+  Vec3 start;                 ///< [m] of the probe
   SceneDevice device;
   std::vector<PathPhase> path;
 

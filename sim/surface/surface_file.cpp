@@ -149,7 +149,8 @@ class SurfaceMaker {
         const std::size_t ends[] = {from, (from + 1) % polygon.size()};
         std::string out;
         for (const std::size_t at : ends)
-          out += (out.empty() ? "" : " to ") + (soup_.first_number ? number(file_.vertex[polygon[at]]) : position_text(positions[at]));
+          out += (out.empty() ? "" : " to ") +
+                 (soup_.first_number ? number(file_.vertex[polygon[at]]) : position_text(positions[at]));
         return out;
       };
       return at_face(face, error, "its edges " + edge(crossing->first) + " and " + edge(crossing->second) + " cross");
@@ -189,8 +190,9 @@ class SurfaceMaker {
       } else if (!is_taken[corner]) {
         is_taken[corner] = true;
       } else {
-        soup_.notes.add("vertices", "one that joins parts of the surface at a point alone is split: each part has its own",
-                        soup_.first_number ? "vertex " + number(file_.vertex[corner]) : "at " + position_text(mesh.vertices[corner]));
+        soup_.notes.add(
+            "vertices", "one that joins parts of the surface at a point alone is split: each part has its own",
+            soup_.first_number ? "vertex " + number(file_.vertex[corner]) : "at " + position_text(mesh.vertices[corner]));
         file_.vertex.push_back(file_.vertex[corner]);
         const Vec3 position = mesh.vertices[corner];
         mesh.vertices.push_back(position);

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kVolumeTolerance = 1e-9;  // relative; TetGen writes 16 digits
-constexpr double kSamePosition = 1e-12;       // of the surface's size; likewise
+constexpr double kSamePosition = 1e-12;    // of the surface's size; likewise
 constexpr double kFar = 1000;              // of the surface's size: so far from the origin 16 digits are too few
 
 tl::unexpected<Diagnostic> unfilled(Errc code, RuleName rule, std::string detail) {

@@ -240,7 +240,7 @@ std::optional<double> tolerable_delay(const DeformableCoupling& coupling, double
   const double ratio = follows_slowly(coupling);
   const double stiffness = square(coupling.client_stiffness), damper = square(coupling.client_damping * omega);
   const double cos_angle = ((1 + square(ratio)) * (stiffness + damper) - square((1 + weber) * (1 - ratio)) * stiffness) /
-                       (2 * ratio * (stiffness + damper));
+                           (2 * ratio * (stiffness + damper));
   if (!(std::abs(cos_angle) <= 1)) return std::nullopt;
   return arc_cosine(cos_angle) / omega;
 }

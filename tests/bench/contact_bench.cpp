@@ -31,7 +31,9 @@ class Samples {
   void report(benchmark::State& state) {
     if (us_.empty()) return;
     std::sort(us_.begin(), us_.end());
-    const auto at = [this](double fraction) { return us_[static_cast<std::size_t>(fraction * static_cast<double>(us_.size() - 1))]; };
+    const auto at = [this](double fraction) {
+      return us_[static_cast<std::size_t>(fraction * static_cast<double>(us_.size() - 1))];
+    };
     state.counters["p50_us"] = at(0.5);
     state.counters["p99_us"] = at(0.99);
     state.counters["p999_us"] = at(0.999);

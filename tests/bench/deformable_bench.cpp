@@ -53,7 +53,9 @@ double microseconds(Clock::duration d) { return std::chrono::duration<double, st
 
 void report(benchmark::State& state, std::vector<double>& times) {
   std::sort(times.begin(), times.end());
-  const auto at = [&](double fraction) { return times[static_cast<std::size_t>(fraction * static_cast<double>(times.size() - 1))]; };
+  const auto at = [&](double fraction) {
+    return times[static_cast<std::size_t>(fraction * static_cast<double>(times.size() - 1))];
+  };
   state.counters["p50_us"] = at(0.5);
   state.counters["p99_us"] = at(0.99);
 }

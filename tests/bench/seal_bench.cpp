@@ -86,7 +86,9 @@ void handshake(benchmark::State& state) {
     steps.insert(steps.end(), pair.steps.begin(), pair.steps.end());
   }
   std::sort(steps.begin(), steps.end());
-  const auto at = [&](double fraction) { return steps[static_cast<std::size_t>(fraction * static_cast<double>(steps.size() - 1))]; };
+  const auto at = [&](double fraction) {
+    return steps[static_cast<std::size_t>(fraction * static_cast<double>(steps.size() - 1))];
+  };
   state.counters["steps"] = static_cast<double>(steps.size()) / static_cast<double>(state.iterations());
   state.counters["step_p50_us"] = at(0.5);
   state.counters["step_p99_us"] = at(0.99);

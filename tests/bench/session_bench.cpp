@@ -26,7 +26,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t kObjects = 10;
 constexpr std::uint64_t kTick = 1000, kDelay = 10'000;  // [us]
-constexpr int kWarmUp = 2000;                         // ticks
+constexpr int kWarmUp = 2000;                           // ticks
 
 class World {
  public:
@@ -171,7 +171,8 @@ void send_device(benchmark::State& state) {
   for (auto _ : state) {
     const double t = 1e-3 * static_cast<double>(tick);
     const Vec3 position{0.05 * std::sin(3 * t), 0.05 * std::cos(2 * t), 1e-4 * std::sin(57 * t)};
-    const auto sent = sender.encode(tick, truth.of(tick, {.position = position}, DeviceContact{position + Vec3{0, 0, 2e-3}, 500}));
+    const auto sent =
+        sender.encode(tick, truth.of(tick, {.position = position}, DeviceContact{position + Vec3{0, 0, 2e-3}, 500}));
     if (!sent) return state.SkipWithError(sent.error().rule);
     packets += sent->size();
     ++tick;

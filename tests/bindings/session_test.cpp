@@ -133,8 +133,8 @@ TEST(CSession, BringsSceneStatesAndDevice) {
   ASSERT_EQ(tactus_client_status(ends.client.get(), 2'000'000, &status, nullptr), TACTUS_OK);
   EXPECT_EQ(status.declaration_bytes, status.declaration_received);
   EXPECT_GT(status.packets_heard, 5u);
-  EXPECT_GT(status.force_share, 0);
-  EXPECT_LE(status.force_share, 1);
+  EXPECT_GT(status.force_fraction, 0);
+  EXPECT_LE(status.force_fraction, 1);
   EXPECT_EQ(status.has_device, 0u);
 }
 

@@ -101,8 +101,8 @@ TEST_F(CTrace, ReportsWhatTheTraceHolds) {
 
 TEST_F(CTrace, ReturnsWhichForcesOfAUserItKnows) {
   const std::pair<RecordedForces, std::uint32_t> cases[] = {{RecordedForces::both, TACTUS_FORCE_RENDERED | TACTUS_FORCE_SERVER},
-                                                         {RecordedForces::rendered, TACTUS_FORCE_RENDERED},
-                                                         {RecordedForces::server, TACTUS_FORCE_SERVER}};
+                                                            {RecordedForces::rendered, TACTUS_FORCE_RENDERED},
+                                                            {RecordedForces::server, TACTUS_FORCE_SERVER}};
   for (const auto& [known, given] : cases) {
     recording.info.users[1].forces = known;
     const TempFile again;

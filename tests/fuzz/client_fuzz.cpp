@@ -22,8 +22,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const DevicePath* known = knows_device ? &path : nullptr;
   RigidPredictor predictor(*scene, known);
   ReplicaOptions options;
-  constexpr Interpolation kInterpolations[] = {Interpolation::none, Interpolation::linear, Interpolation::playout, Interpolation::hermite,
-                                     Interpolation::blending};
+  constexpr Interpolation kInterpolations[] = {Interpolation::none, Interpolation::linear, Interpolation::playout,
+                                               Interpolation::hermite, Interpolation::blending};
   if (size > 0) options.interpolation = kInterpolations[data[0] % 5];
   if (!Replica::check(options, *scene)) options.interpolation = Interpolation::none;
   Replica replica(*scene, options, {}, known);

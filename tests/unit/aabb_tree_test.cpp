@@ -92,7 +92,9 @@ TEST(Triangle, MovingSphereStopsAtTheRadius) {
     const Corners v{random_point(random, 1), random_point(random, 1), random_point(random, 1)};
     const Vec3 from = random_point(random, 3);
     const Sweep sweep{from, 2.0 * (random_point(random, 1) - from), random.uniform(1e-8, 0.5), 1e-9};
-    const auto distance = [&](double t) { return std::sqrt(closest_on_triangle(sweep.from + t * sweep.displacement, v).distance2); };
+    const auto distance = [&](double t) {
+      return std::sqrt(closest_on_triangle(sweep.from + t * sweep.displacement, v).distance2);
+    };
     if (distance(0) < sweep.radius) continue;
     const auto hit = sphere_hits_triangle(sweep, v, 1);
     const double end = hit ? hit->t : 1;

@@ -135,7 +135,8 @@ TEST(AcknowledgedBaselines, NoLossStopsRigidObjects) {
         const bool seen = norm(shown.position - pose.position) <= kBounds.visual_position &&
                           angle_between(shown.rotation, pose.rotation) <= kBounds.visual_rotation;
         const Contact contact = testing::touch(1, pose, 0.002);
-        const bool keeps_force = i != 1 || haptic_ratio(kBounds, contact_force(contact, pose), contact_force(contact, shown)) <= 1;
+        const bool keeps_force =
+            i != 1 || haptic_ratio(kBounds, contact_force(contact, pose), contact_force(contact, shown)) <= 1;
         broken += seen && keeps_force ? 0u : 1u;
       }
     };

@@ -186,7 +186,8 @@ struct Arrival {
 
 class PlayoutReplica {
  public:
-  explicit PlayoutReplica(Interpolation interpolation = Interpolation::playout) : replica_(*scene_, {.interpolation = interpolation}, {}) {}
+  explicit PlayoutReplica(Interpolation interpolation = Interpolation::playout)
+      : replica_(*scene_, {.interpolation = interpolation}, {}) {}
   void take(const Arrival& arrival, std::int64_t now = 0) {
     const RigidState state = along(arrival.tick, true);
     const RigidUpdate named{0, Reason::visual, 0};
@@ -251,7 +252,8 @@ TEST(ClientPlayout, ARestartForgetsWhatWasKnown) {
 }
 
 TEST(ClientReplicaOrder, AReorderedUpdateIsNotShown) {
-  for (const Interpolation interpolation : {Interpolation::none, Interpolation::linear, Interpolation::hermite, Interpolation::blending}) {
+  for (const Interpolation interpolation :
+       {Interpolation::none, Interpolation::linear, Interpolation::hermite, Interpolation::blending}) {
     PlayoutReplica client(interpolation), spared(interpolation);
     for (PlayoutReplica* both : {&client, &spared}) {
       both->take({1, 400}, 400);

@@ -384,7 +384,8 @@ TEST(Csv, TactusLayoutDistrustsDevices) {
       "/users/u/point_x,/users/u/point_y,/users/u/point_z,/users/u/normal_x,/users/u/normal_y,/users/u/normal_z,"
       "/users/u/stiffness,/users/u/device_qw,/users/u/device_qx,/users/u/device_qy,/users/u/device_qz,/users/u/device_buttons,"
       "/users/u/device_time_ns\n";
-  const auto check = [&](const std::string& contact, const std::string& device, std::string_view rule, std::string_view location) {
+  const auto check = [&](const std::string& contact, const std::string& device, std::string_view rule,
+                         std::string_view location) {
     const Imported outcome = import(std::string(kNames) + "0,0,63,0,0,0,1,0,0,0,0,0,0,0,0,0," + contact +
                                         ",0,0,0,0,0,0,0,0,0,0,0,0,0,0,1,100," + device + "\n",
                                     preset("tactus"));

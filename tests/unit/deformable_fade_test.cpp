@@ -101,7 +101,9 @@ TEST(DeformableFractions, ErrorsReachTheBoundBeforeAPacketGoes) {
 }
 
 TEST(DeformableFractions, DefaultLeavesAMarginWhereShapesComeFast) {
-  const auto bytes = [](std::uint32_t rate, std::optional<double> fraction) { return walked({}, 120, fraction, rate).moving.bytes; };
+  const auto bytes = [](std::uint32_t rate, std::optional<double> fraction) {
+    return walked({}, 120, fraction, rate).moving.bytes;
+  };
   EXPECT_EQ(bytes(60, {}), bytes(60, 1.0));
   EXPECT_EQ(bytes(100, {}), bytes(100, 1.0));
   EXPECT_EQ(bytes(101, {}), bytes(101, 0.7));

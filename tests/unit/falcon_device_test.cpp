@@ -346,9 +346,9 @@ TEST(FalconBackend, SaysWhyADeviceIsNotOpened) {
     EXPECT_EQ(reported(which).find("falcon:" + std::string(which) + ": R-DEV-1"), 0u) << reported(which);
   usb.refusal = UsbStatus::denied;
   EXPECT_NE(reported("").find("R-DEV-2"), std::string::npos);
-  EXPECT_NE(
-      reported("").find(R"(70-falcon.rules, then unplug the Falcon and plug it in again: SUBSYSTEM=="usb", ATTR{idVendor}=="0403")"),
-      std::string::npos)
+  EXPECT_NE(reported("").find(
+                R"(70-falcon.rules, then unplug the Falcon and plug it in again: SUBSYSTEM=="usb", ATTR{idVendor}=="0403")"),
+            std::string::npos)
       << reported("");
   EXPECT_NE(reported("").find(R"(TAG+="uaccess")"), std::string::npos);
   usb.refusal = UsbStatus::busy;

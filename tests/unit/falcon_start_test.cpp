@@ -68,8 +68,9 @@ TEST_F(FalconStart, WithoutFirmwareTheErrorSaysWhatToName) {
   EXPECT_EQ(reported(start(port_, "")),
             "the Falcon was switched on and has no firmware yet: R-DEV-3: what the device needs on this machine is not "
             "there; name the firmware file that came with the vendor's driver, and switch the Falcon off and on");
-  EXPECT_EQ(reported(start(port_, "/nowhere/firmware.bin")).find("/nowhere/firmware.bin: the firmware cannot be read: No such file"),
-            0u);
+  EXPECT_EQ(
+      reported(start(port_, "/nowhere/firmware.bin")).find("/nowhere/firmware.bin: the firmware cannot be read: No such file"),
+      0u);
   for (const std::size_t size : {std::size_t{0}, kMostFirmware + 1}) {
     const File other(size);
     const auto result = start(port_, other.path());

@@ -209,8 +209,8 @@ TEST(FemSpace, QuadraticElementsReachTheLimitOfLinearOnes) {
     std::array<double, 3> fractions{};
     for (std::size_t level = 0; level < 3; ++level) fractions[level] = quadratic_fraction(1 << level, poisson);
     const auto [limit, uncertainty] = limit_of(fractions[0], fractions[1], fractions[2]);
-    std::printf("nu %.2f: %.4f %.4f %.4f of Timoshenko, limit %.4f +- %.4f\n", poisson, fractions[0], fractions[1], fractions[2], limit,
-                uncertainty);
+    std::printf("nu %.2f: %.4f %.4f %.4f of Timoshenko, limit %.4f +- %.4f\n", poisson, fractions[0], fractions[1], fractions[2],
+                limit, uncertainty);
     EXPECT_LT(uncertainty, 2e-3);
     // The clamp keeps the end face from contracting sideways, so the solid is a little stiffer than the beam.
     EXPECT_LT(limit, 1);

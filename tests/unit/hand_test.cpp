@@ -195,10 +195,12 @@ TEST(Spiral, RadiusAngleAndHeightChangeEvenly) {
   constexpr int kSteps = 1000;
   for (int i = 0; i < kSteps; ++i) {
     const double fraction = (i + 0.5) / kSteps, half = 0.5 / kSteps;
-    const Vec3 before = spiral.at(fraction - half).position, after = spiral.at(fraction + half).position, now = spiral.at(fraction).position;
+    const Vec3 before = spiral.at(fraction - half).position, after = spiral.at(fraction + half).position,
+               now = spiral.at(fraction).position;
     EXPECT_NEAR(std::hypot(now.x - centre.x, now.y - centre.y), 0.02 + 0.03 * fraction, 1e-15);
     EXPECT_NEAR(now.z, 0.02 - 0.03 * fraction, 1e-15);
-    EXPECT_LT(norm(static_cast<double>(kSteps) * (after - before) - spiral.at(fraction).velocity), 1e-4) << "velocity is the slope";
+    EXPECT_LT(norm(static_cast<double>(kSteps) * (after - before) - spiral.at(fraction).velocity), 1e-4)
+        << "velocity is the slope";
     const Vec3 a = before - centre, b = after - centre;
     turned += std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
   }

@@ -161,7 +161,8 @@ TEST(LevelsOfDetail, WhatRestsIsLookedAtWhereTheViewpointMoves) {
   levels.set_viewpoints({&viewpoint, 1});
   scan();
   EXPECT_GT(changed, 60u);
-  for (std::uint32_t i = 0; i < 140; ++i) EXPECT_EQ(levels.of(i) == kOutOfInterest, norm(World::home(i) - viewpoint) > kReach) << i;
+  for (std::uint32_t i = 0; i < 140; ++i)
+    EXPECT_EQ(levels.of(i) == kOutOfInterest, norm(World::home(i) - viewpoint) > kReach) << i;
 }
 
 struct Judged {

@@ -26,7 +26,7 @@ TEST(MeshProxy, FollowsTheProbeInFreeSpace) {
     Vec3 probe = testing::random_point(random, 1);
     if (norm(probe) < 0.12) continue;
     probe = (0.2 / norm(probe)) * probe;  // neighbours may lie on opposite sides of the ball, ...
-    hand.move_to(probe);                    // ... so each is a start
+    hand.move_to(probe);                  // ... so each is a start
     const ProxyTouch touch = hand.move(probe + testing::random_point(random, 0.05));
     ASSERT_FALSE(touch.touched);
     ASSERT_EQ(touch.proxy, hand.proxy.position());

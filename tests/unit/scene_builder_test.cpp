@@ -148,7 +148,9 @@ TEST(SceneBuilder, DeclaredBoundsAreThoseOfItsObjects) {
   const TriMesh mesh = testing::sheet(1, 1);
   const RigidTriggers rigid{.visual_position = 0.011};
   const DeformableThresholds deformable{.visual = 3e-4};
-  const auto with = [&](SceneBuilder builder) { return builder.declare_bounds(rigid, deformable).build().value()->bounds.value(); };
+  const auto with = [&](SceneBuilder builder) {
+    return builder.declare_bounds(rigid, deformable).build().value()->bounds.value();
+  };
   const StreamBounds both =
       with(SceneBuilder().rigid("cube").deformable("m", mesh).deformable("t", mesh, {.profile = DeformableProfile::thesis}));
   EXPECT_EQ(both.rigid, rigid);
@@ -240,7 +242,8 @@ TEST(SceneBuilder, AWorldHasASize) {
   EXPECT_STREQ(refused.error().error.rule, "R-API-4");
   for (const char* part : {"1e+05 m", "0.1 mm", "1.638e+04 m"})
     EXPECT_NE(refused.error().detail.find(part), std::string::npos) << refused.error().detail;
-  EXPECT_TRUE(SceneBuilder().rigid("a", {}, {.dof = Dof::none}).declare_bounds(fine, {}).world_size(1e5).build()) << "nothing moves";
+  EXPECT_TRUE(SceneBuilder().rigid("a", {}, {.dof = Dof::none}).declare_bounds(fine, {}).world_size(1e5).build())
+      << "nothing moves";
   const auto away = SceneBuilder().rigid("a", {{600, 0, 0}, {}}).build();
   EXPECT_NE(away.error().detail.find("512 m"), std::string::npos) << away.error().detail;
 }

@@ -157,7 +157,8 @@ TEST(Compensation, RendersASurfaceByTheStiffnessThatIsDeclared) {
     return compensation.soften(0, touch, device, shown, 20).z;
   };
   const double whole = 300 * 4e-3;
-  EXPECT_NEAR(rendered(&soft), whole * (1 - 0.75 * 0.5), 0.02 * whole) << "K = 300/400 of the displacement in 20 ms, half of the stretch";
+  EXPECT_NEAR(rendered(&soft), whole * (1 - 0.75 * 0.5), 0.02 * whole)
+      << "K = 300/400 of the displacement in 20 ms, half of the stretch";
   EXPECT_NEAR(rendered(&fixed), whole, 1e-12) << "it does not move";
   EXPECT_NEAR(rendered(nullptr), whole, 1e-12) << "nothing is declared";
 }

@@ -176,11 +176,11 @@ Bytes any_part(Random& random, std::uint64_t epoch) {
 Bytes join_of(Random& random) {
   DatagramWriter writer(Direction::up);
   const auto message = writer.write(Join{.role = random() % 2 == 0 ? Role::participant : Role::observer,
-                                      .nonce = random(),
-                                      .state_limit = random() >> random() % 64,
-                                      .header_limit = random() >> random() % 64,
-                                      .token = random() % 2,
-                                      .seat = static_cast<std::uint8_t>(random() % 4)});
+                                         .nonce = random(),
+                                         .state_limit = random() >> random() % 64,
+                                         .header_limit = random() >> random() % 64,
+                                         .token = random() % 2,
+                                         .seat = static_cast<std::uint8_t>(random() % 4)});
   return {message.begin(), message.end()};
 }
 
@@ -215,8 +215,8 @@ void send_as_strangers(Attacked& world, Random& random) {
   for (int i = 0; i < 24; ++i) {
     const std::uint64_t from = 100 + random() % 50, what = random() % 4;
     world.send(from, what == 0   ? join_of(random)
-                    : what == 1 ? any_part(random, random())
-                                : damaged(random, world, world.bad().epoch));
+                     : what == 1 ? any_part(random, random())
+                                 : damaged(random, world, world.bad().epoch));
   }
 }
 

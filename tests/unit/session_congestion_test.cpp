@@ -233,7 +233,7 @@ TEST(LossBursts, WhateverComesItIsWithinItsLimit) {
 
 // ==== session resends ====
 
-constexpr std::uint64_t kMillisecond = 1000;                                           // [us]
+constexpr std::uint64_t kMillisecond = 1000;                                               // [us]
 constexpr Resends::Latest kShapes{.rigid = 400'000, .shape = 120'000, .one_way = 20'000};  // [us]
 
 struct Sent {

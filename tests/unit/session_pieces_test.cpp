@@ -237,8 +237,8 @@ TEST(LinePacer, AcknowledgementsThatLieChangeOnlyTheOwnPacing) {
     for (auto i = random() % 60; i > 0; --i) pacer.arrived();
     const auto arrived = static_cast<std::int64_t>(now - random() % 1'100'000);
     const auto sample = static_cast<std::int64_t>(random() % 2'000'000);
-    pacer.feedback({number, number + random() % 9, arrived - sample, arrived}, {sample, sample / 2, std::min<std::int64_t>(sample, 7)},
-              now);
+    pacer.feedback({number, number + random() % 9, arrived - sample, arrived},
+                   {sample, sample / 2, std::min<std::int64_t>(sample, 7)}, now);
     ASSERT_GE(pacer.gap(), 80u);
     ASSERT_GE(pacer.window(), 4u);
     ASSERT_LE(pacer.window(), 800u);

@@ -74,7 +74,8 @@ class World {
       static_cast<void>(users[down.front().user].handle_datagram(now, down.front().bytes));
     for (std::size_t i = 0; i < users.size(); ++i) {
       users[i].handle_timeout(now);
-      while (const auto message = users[i].poll_datagram(now)) up.push_back({now + 5000, i, Bytes(message->begin(), message->end())});
+      while (const auto message = users[i].poll_datagram(now))
+        up.push_back({now + 5000, i, Bytes(message->begin(), message->end())});
     }
   }
   void drain(std::uint64_t now) {

@@ -37,7 +37,9 @@ class Walk {
     const Vec3 inward = (-1 / norm(at_)) * at_, displacement = random_point(random_, 1) + random_.uniform(-0.2, 1) * inward;
     return {at_, length / norm(displacement) * displacement, radius_, kSlack};
   }
-  void go(const Sweep& sweep, const std::optional<SurfaceHit>& hit) { at_ = sweep.from + (hit ? hit->rest : 1.0) * sweep.displacement; }
+  void go(const Sweep& sweep, const std::optional<SurfaceHit>& hit) {
+    at_ = sweep.from + (hit ? hit->rest : 1.0) * sweep.displacement;
+  }
   std::uint64_t draw() { return random_.next(); }
 
  private:

@@ -178,9 +178,9 @@ TEST(TraceRosStrange, TwoPublishersOfOnePoseAreReported) {
   RosBag bag;
   for (int i = 0; i < 100; ++i) bag.add(5 * i, "/tool/pose", kPoseSchema, along_x(0.001 * i + (i % 2)));
   const Notes notes = bag.notes();
-  EXPECT_TRUE(has(
-      notes, "/tool/pose",
-      "its samples go to and fro between two positions, up to 1 m apart, as of two publishers: let each have a topic of its own"));
+  EXPECT_TRUE(has(notes, "/tool/pose",
+                  "its samples go to and fro between two positions, up to 1 m apart, as of two publishers: let each have a topic "
+                  "of its own"));
   RosBag one;
   for (int i = 0; i < 100; ++i) one.add(5 * i, "/tool/pose", kPoseSchema, along_x(0.1 * std::sin(0.5 * i)));
   for (const auto& [where, what] : one.notes()) EXPECT_EQ(what.find("to and fro"), std::string::npos) << what;

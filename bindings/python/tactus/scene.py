@@ -220,20 +220,20 @@ def _physics_of(name: str, of: Elastic) -> _abi.tactus_elastic_physics:
     material = None if of.material is None else _whole(name, "material", of.material, np.uint8)
     if material is not None and len(material) != len(tets):
         raise ValueError(f"{name}: {len(material)} numbers of materials for {len(tets)} tetrahedra")
-    told = init(_abi.tactus_elastic_physics())
-    told._kept = (tets, inner, materials, fixed, material)  # the struct only points to them
-    told.materials, told.material_count = materials.ctypes.data, len(materials)
-    told.inner, told.inner_count = inner.ctypes.data, len(inner)
-    told.tets, told.tet_count = tets.ctypes.data, len(tets)
-    told.fixed, told.fixed_count = fixed.ctypes.data, len(fixed)
-    told.material = None if material is None else material.ctypes.data
-    told.gravity = (ctypes.c_double * 3)(*of.gravity)
+    physics = init(_abi.tactus_elastic_physics())
+    physics._kept = (tets, inner, materials, fixed, material)  # the struct only points to them
+    physics.materials, physics.material_count = materials.ctypes.data, len(materials)
+    physics.inner, physics.inner_count = inner.ctypes.data, len(inner)
+    physics.tets, physics.tet_count = tets.ctypes.data, len(tets)
+    physics.fixed, physics.fixed_count = fixed.ctypes.data, len(fixed)
+    physics.material = None if material is None else material.ctypes.data
+    physics.gravity = (ctypes.c_double * 3)(*of.gravity)
     if of.method not in _METHODS:
         raise ValueError(f"{name}: method {of.method!r} is none of {', '.join(_METHODS)}")
-    told.method = _METHODS[of.method]
+    physics.method = _METHODS[of.method]
     for part in ("mass_damping", "stiffness_damping", "coupling", "friction", "sub_steps"):
-        setattr(told, part, getattr(of, part))
-    return told
+        setattr(physics, part, getattr(of, part))
+    return physics
 
 
 class _Builder(Handle):

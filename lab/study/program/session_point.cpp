@@ -119,7 +119,9 @@ Json json_of(const library::SessionResult& r) {
            {"down_bit_per_s", {{"payload", down.payload}, {"session", down.session}, {"udp_ipv4", down.headers}}},
            {"up_bit_per_s", up.all()},
            {"bound_scale",
-            {{"largest", r.bound_scaling.largest}, {"mean", r.mean_bound_scale}, {"for_s", 1e-6 * static_cast<double>(r.bound_scaling.time)}}},
+            {{"largest", r.bound_scaling.largest},
+             {"mean", r.mean_bound_scale},
+             {"for_s", 1e-6 * static_cast<double>(r.bound_scaling.time)}}},
            {"error_bounds", {{"median", r.error_median}, {"p95", r.error_p95}, {"worst", r.worst}}},
            {"wrong_states", r.down.wrong_states},
            {"coding_cpu_s", r.server_time}};

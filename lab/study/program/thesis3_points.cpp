@@ -213,11 +213,11 @@ Json interpolations_point(Request& request) {
   for (std::size_t i = 0; i < watchers.size(); ++i) {
     const Watcher::Effect& e = watchers[i].effect();
     out["interpolations"].push_back({{"interpolation", names[i]},
-                           {"ticks_in_contact", e.ticks},
-                           {"ticks_over", e.over},
-                           {"worst_ratio", e.worst},
-                           {"force_steps", e.steps},
-                           {"accelerations_m_per_s2", e.accelerations}});
+                                     {"ticks_in_contact", e.ticks},
+                                     {"ticks_over", e.over},
+                                     {"worst_ratio", e.worst},
+                                     {"force_steps", e.steps},
+                                     {"accelerations_m_per_s2", e.accelerations}});
   }
   if (wants_curves) out["curves"] = std::move(curves);
   return out;
