@@ -108,15 +108,6 @@ Result<DecodedPacket> Receiver::push_numbered(std::uint64_t number, std::span<co
 
 void Receiver::skip_number(std::uint64_t number) noexcept { impl_->replica.skip_number(number); }
 
-void Receiver::know(std::shared_ptr<const DevicePath> path) {
-  impl_->path = std::move(path);
-  impl_->replica.know(*impl_->path);
-  const Scene& scene = *impl_->scene;
-  for (std::size_t i = 0; i < scene.deformables.size(); ++i)
-    if (const DeformableObject& object = scene.deformables[i]; object.body)
-      impl_->deformables[i]->know(std::make_unique<DrivenShape>(scene, object, *impl_->path));
-}
-
 Pose Receiver::pose(std::uint32_t object, std::int64_t tick) const noexcept {
   return to_pose(impl_->replica.pose(object, tick), impl_->scene->grid.position);
 }
