@@ -43,7 +43,7 @@ BENCHMARK(set_up)->Unit(benchmark::kMillisecond);
 void step(benchmark::State& state) {
   const SharedScene scene = declared();
   ElasticSolver solver(*scene, scene->deformables[0]);
-  ElasticState shape{std::vector<double>(3 * solver.vertices()), std::vector<double>(3 * solver.vertices())};
+  ElasticState shape(solver.vertices());
   std::vector<double> load(shape.displacement.size());
   std::size_t at = 0;
   for (auto _ : state) {
