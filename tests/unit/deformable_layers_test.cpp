@@ -307,6 +307,7 @@ TEST(DeformableLayers, ThesisListsWhatIsRenderedInAPacketOfItsOwn) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   SceneSpec spec = testing::sheet_spec(mesh, DeformableProfile::thesis);
   spec.deformables[0].quant_bits = 12;
+  spec.deformables[0].layered = true;
   const SharedScene scene = testing::shared(std::move(spec));
   SheetEnds ends(scene, options(1));
   DentedSheet sheet(mesh, kSquares);
