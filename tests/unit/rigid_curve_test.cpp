@@ -201,7 +201,7 @@ TEST(Smoothing, KeepsTheSixteenthsThatAreSignalled) {
   for (const auto& [retained, left] : {std::pair{0, 1600}, {1, 1500}, {2, 1200}, {3, 800}}) {
     SmoothedPath path;
     path.follow(predictor, update_at(10, 1600, 4, static_cast<std::uint8_t>(retained)));
-    EXPECT_EQ(path.pose(predictor, 10).position[0], 1600 - left) << keep;
+    EXPECT_EQ(path.pose(predictor, 10).position[0], 1600 - left) << retained;
   }
 }
 

@@ -109,13 +109,13 @@ TEST(Driven, APositionIsLookedUpAgainOnceThePastHasChanged) {
   EXPECT_NE(path.at(15), before) << "the second packet was lost";
 }
 
-struct Run {
+struct Trial {
   std::size_t shown = 0, outside = 0, driven = 0;
   std::uint64_t packets = 0;
 };
 
 /// A shipped scene over a network.   in  model_scale  times the true mass: what is declared to clients; 0: nothing is driven
-Run run(const char* name, double model_scale, const sim::LinkOptions& link, std::int64_t ticks) {
+Trial trial(const char* name, double model_scale, const sim::LinkOptions& link, std::int64_t ticks) {
   const sim::Scene scene = sim::load_scene(*sim::find_scene(name)).value();
   sim::SessionNetwork* network = nullptr;
   sim::ChannelOptions channel;
@@ -131,7 +131,7 @@ Run run(const char* name, double model_scale, const sim::LinkOptions& link, std:
   auto simulation = sim::Simulation::create(scene, {.seed = 1, .grip = {}, .channel = channel});
   EXPECT_TRUE(simulation) << simulation.error().rule;
   std::vector<Vec3> truth;
-  Run out;
+  Trial out;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     EXPECT_TRUE(simulation->step());
     truth.push_back(simulation->frame().objects[0].pose.position);
@@ -148,27 +148,27 @@ Run run(const char* name, double model_scale, const sim::LinkOptions& link, std:
 
 TEST(Driven, TheClientShowsWhereItsDeviceHasMovedAnObject) {
   for (const char* scene : {"push-1dof", "rotate-6dof"}) {
-    const Run driven = run(scene, 1, {.delay = 10'000}, 3000);
+    const Trial driven = trial(scene, 1, {.delay = 10'000}, 3000);
     EXPECT_GT(driven.shown, 1900u) << "from the first packet on";
     EXPECT_EQ(driven.outside, 0u) << scene;
     EXPECT_GT(driven.driven, 300u);
-    const Run coded = run(scene, 0, {.delay = 10'000}, 3000);
+    const Trial coded = trial(scene, 0, {.delay = 10'000}, 3000);
     EXPECT_EQ(coded.driven, 0u);
     EXPECT_LT(driven.packets, coded.packets) << scene;
   }
 }
 
 TEST(Driven, AWrongMassKeepsTheBounds) {
-  const Run right = run("push-1dof", 1, {.delay = 10'000}, 3000);
-  const Run wrong = run("push-1dof", 1.2, {.delay = 10'000}, 3000);
+  const Trial right = trial("push-1dof", 1, {.delay = 10'000}, 3000);
+  const Trial wrong = trial("push-1dof", 1.2, {.delay = 10'000}, 3000);
   EXPECT_EQ(wrong.outside, 0u);
   EXPECT_GT(wrong.packets, right.packets);
 }
 
 /// What is lost leads both ends apart for a round trip, so that nothing is driven once the server sees that packets are lost.
 TEST(Driven, WherePacketsAreLostNothingIsDriven) {
-  const Run lost = run("rotate-6dof", 1, {.delay = 10'000, .jitter = 3'000, .loss = 0.05}, 5000);
-  const Run clean = run("rotate-6dof", 1, {.delay = 10'000, .jitter = 3'000}, 5000);
+  const Trial lost = trial("rotate-6dof", 1, {.delay = 10'000, .jitter = 3'000, .loss = 0.05}, 5000);
+  const Trial clean = trial("rotate-6dof", 1, {.delay = 10'000, .jitter = 3'000}, 5000);
   EXPECT_LT(lost.driven, clean.driven / 2);
   EXPECT_LT(lost.outside, lost.shown / 100);
   EXPECT_LT(clean.outside, clean.shown / 1000);

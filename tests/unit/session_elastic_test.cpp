@@ -17,14 +17,14 @@ namespace {
 
 constexpr double kVisual = 2.5e-4;
 
-struct Run {
+struct Trial {
   std::size_t frames = 0, outside = 0;  // compared; with a vertex over the visual bound
   std::uint64_t packets = 0, bytes = 0, datagrams = 0;
   double force_error = 0;  // [N] mean difference between the rendered force and the server's, from its own state
 };
 
 /// A scene over a network.   in  model_scale  times the true Young's modulus: what is declared to clients
-Run run(const sim::Scene& scene, const sim::LinkOptions& link, std::int64_t ticks, double model_scale = 1) {
+Trial trial(const sim::Scene& scene, const sim::LinkOptions& link, std::int64_t ticks, double model_scale = 1) {
   sim::SessionNetwork* network = nullptr;
   sim::ChannelOptions channel;
   channel.client_model_scale = model_scale;
@@ -40,7 +40,7 @@ Run run(const sim::Scene& scene, const sim::LinkOptions& link, std::int64_t tick
   EXPECT_TRUE(simulation) << simulation.error().rule;
   const std::uint32_t rate = scene.deformables[0].rate;
   std::vector<std::vector<float>> truth;  // by frame
-  Run out;
+  Trial out;
   std::int64_t compared = -1;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     EXPECT_TRUE(simulation->step());
@@ -70,11 +70,11 @@ Run run(const sim::Scene& scene, const sim::LinkOptions& link, std::int64_t tick
 sim::Scene membrane() { return sim::load_scene(*sim::find_scene("membrane-large")).value(); }
 
 TEST(Elastic, OneWhoKnowsTheBodyNeedsHardlyAPacket) {
-  const Run knows = run(membrane(), {.delay = 10'000}, 4000);
+  const Trial knows = trial(membrane(), {.delay = 10'000}, 4000);
   EXPECT_GT(knows.frames, 150u);
   EXPECT_EQ(knows.outside, 0u);
   EXPECT_LE(knows.packets, 4u);
-  const Run ignorant = run(membrane(), {.delay = 10'000}, 4000, 0);
+  const Trial ignorant = trial(membrane(), {.delay = 10'000}, 4000, 0);
   EXPECT_EQ(ignorant.outside, 0u);
   EXPECT_GT(ignorant.packets, 20 * knows.packets);
   EXPECT_LT(knows.datagrams, ignorant.datagrams / 3);
@@ -86,7 +86,7 @@ TEST(Elastic, TheBodyStepsAsTheServerDoes) {
   sim::Scene implicit = membrane();
   implicit.deformables[0].method = "auto";
   for (const sim::Scene& scene : {implicit, sim::load_scene(*sim::find_scene("membrane")).value()}) {
-    const Run knows = run(scene, {.delay = 10'000}, 4000);
+    const Trial knows = trial(scene, {.delay = 10'000}, 4000);
     EXPECT_EQ(knows.outside, 0u);
     EXPECT_LE(knows.packets, 4u);
   }
@@ -94,8 +94,8 @@ TEST(Elastic, TheBodyStepsAsTheServerDoes) {
 
 /// Young's modulus is 10 % off: the bounds hold, and packets are fewer than without a body.
 TEST(Elastic, AWrongBodyKeepsTheBounds) {
-  const Run wrong = run(membrane(), {.delay = 10'000}, 4000, 1.1);
-  const Run ignorant = run(membrane(), {.delay = 10'000}, 4000, 0);
+  const Trial wrong = trial(membrane(), {.delay = 10'000}, 4000, 1.1);
+  const Trial ignorant = trial(membrane(), {.delay = 10'000}, 4000, 0);
   EXPECT_EQ(wrong.outside, 0u);
   EXPECT_LT(wrong.packets, ignorant.packets);
   EXPECT_LT(wrong.force_error, 1.02 * ignorant.force_error);
@@ -109,13 +109,13 @@ TEST(Elastic, AnotherUserKeepsTheBounds) {
   for (sim::PathPhase& phase : other.path) phase.to.x = -phase.to.x;
   other.start.x = -other.start.x;
   scene.users.push_back(other);
-  const Run two = run(scene, {.delay = 10'000}, 4000);
+  const Trial two = trial(scene, {.delay = 10'000}, 4000);
   EXPECT_EQ(two.outside, 0u);
   EXPECT_GT(two.packets, 10u);
 }
 
 TEST(Elastic, LossesLeadAstrayForARoundTripAtMost) {
-  const Run lossy = run(membrane(), {.delay = 10'000, .jitter = 3'000, .loss = 0.05}, 4000);
+  const Trial lossy = trial(membrane(), {.delay = 10'000, .jitter = 3'000, .loss = 0.05}, 4000);
   EXPECT_LT(lossy.outside, lossy.frames / 50);
   EXPECT_LE(lossy.packets, 20u);
 }
