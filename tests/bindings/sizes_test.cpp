@@ -242,7 +242,7 @@ TEST_F(CSizes, OfAnEncoder) {
     EXPECT_EQ(tactus_player_open(file.data(), file.size(), nullptr, &out, nullptr), TACTUS_OK);
     return Player(out);
   };
-  const auto tell = [&](auto* info, auto* error) { return tactus_player_play(open().get(), INT64_MAX, info, error); };
+  const auto info_of = [&](auto* info, auto* error) { return tactus_player_play(open().get(), INT64_MAX, info, error); };
   const Player player = open();
   const Sender idle = make_sender(sheet_alone());
   std::int64_t next = 0;
@@ -282,7 +282,7 @@ TEST_F(CSizes, OfAnEncoder) {
             initialised<tactus_elastic_physics>(),
             taking<tactus_elastic_physics>(deform_elastic),
             {136}},
-           {"sender_options", 72, Direction::option, initialised<tactus_sender_options>(), taking<tactus_sender_options>(send)},
+           {"sender_options", 64, Direction::option, initialised<tactus_sender_options>(), taking<tactus_sender_options>(send)},
            {"truth", 72, Direction::option, initialised<tactus_truth>(), taking<tactus_truth>(encode_nothing), {88}},
            {"packet_info", 64, Direction::answer, {}, taking<tactus_packet_info>(info_of)}})
     check_sizes(call);
