@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const SharedScene scene = Scene::create(std::move(spec)).value();
   DevicePath path(device_scene(*scene).value());
   path.shift(0, 3);
-  const DevicePath* known = knows_device ? &path : nullptr;
+  const DevicePath* known = has_device ? &path : nullptr;
   RigidPredictor predictor(*scene, known);
   ReplicaOptions options;
   constexpr Interpolation kInterpolations[] = {Interpolation::none, Interpolation::linear, Interpolation::playout,
