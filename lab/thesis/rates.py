@@ -258,8 +258,7 @@ visual broken   ticks in which its position, and in which its rotation, breaks t
 The other columns are those of the scene's hand:
 shown over      fraction of the ticks in contact in which the shown state, smoothed or not, breaks the haptic rule
 shown worst     largest error in these ticks, as a multiple of the permitted error
- force over JND  fraction of ticks in which the error of the rendered force is perceptible (more than 10 to 22 %)""".split("
-")
+force over JND  fraction of ticks in which the error of the rendered force is perceptible (more than 10 to 22 %)""".split("\n")
 
 
 def settings_text(options, report, rows):
