@@ -151,7 +151,7 @@ void deliver(tactus_sender* sender, const tactus_packet& packet, tactus_receiver
   const std::vector<std::uint8_t> bytes(packet.data, packet.data + packet.bytes);
   auto info = sized<tactus_packet_info>();
   require(call(tactus_receiver_push, receiver, bytes.data(), bytes.size(), std::int64_t{TACTUS_NO_CLOCK}, &info));
-  require(info.tick == packet.tick && info.number == packet.number && info.updates == packet.updates);
+  require(info.tick == packet.tick && info.sequence == packet.sequence && info.updates == packet.updates);
   require(call(tactus_writer_add, writer, packet.tick, bytes.data(), bytes.size(), packet.key));
   (void)call(tactus_sender_acknowledge, sender, packet.substream, packet.sequence);
 }
