@@ -250,10 +250,11 @@ void MeshArguments::add_encoder_to(Command& app) {
            ->one_of({"thesis", "main"})
            ->type_name("NAME"),
        modes,
-       fade_ = add_quantity(app, key("fade"), fade_fraction_, Dimension::fraction,
-                            "Share of the corrections outside the basis that fades per second (with a basis) [98%, or 0% for a "
-                            "--deformable-visual of 0.01mm and less]")
-                   ->check(within(Dimension::fraction, "0%", "100%")),
+       fade_ =
+           add_quantity(app, key("fade"), fade_fraction_, Dimension::fraction,
+                        "Fraction of the corrections outside the basis that fades per second (with a basis) [98%, or 0% for a "
+                        "--deformable-visual of 0.01mm and less]")
+               ->check(within(Dimension::fraction, "0%", "100%")),
        app.add_option(
               key("nugget"), nugget,
               "How much of a vertex's movement its neighbours do not share: 2%, 5%, 30%, or all for a choice per packet, at "
@@ -268,7 +269,9 @@ void MeshArguments::add_encoder_to(Command& app) {
                       "Keep adapting the entropy models from packet to packet (--profile thesis) [off]"),
        app.add_switch(key("layered"), coding_.layered,
                       "Touched deformable objects: send the haptic layer in its own packet before the visual layer. Costs "
-                      "a second header per update and 3 to 30 % of the bits [off]")});
+                      "a second header per update; of the payload -14 to 45 % without and -22 to 117 % with a basis, 0 to 30 % "
+                      "with --profile "
+                      "thesis, over five scenes [off]")});
 }
 
 bool MeshArguments::any_given() const {
