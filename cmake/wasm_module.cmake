@@ -14,7 +14,7 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/wasm/include/tactus_rules.inc CONTEN
 # Exceptions: the codec throws nothing but for lack of memory, which stops the module. So catch is ignored, and the headers do without.
 function(tactus_wasm_flags source out)
   set(size -Os)
-  if(source MATCHES "^codec/(base|scene|file)/|^codec/mesh/(cluster_basis|deformable_object|elastic_elements|graph|kriging)|^bindings/c/")
+  if(source MATCHES "^codec/(base|scene|file)/|^codec/mesh/(cluster_basis|deformable_object|elastic_elements|graph|kriging)|^codec/(mesh_support|player|receiver)|^bindings/c/")
     set(size -Oz)
   endif()
   set(flags --target=wasm32-wasi -mbulk-memory -mnontrapping-fptoint -msign-ext -std=c++20 ${size} -flto -DNDEBUG

@@ -215,11 +215,11 @@ const tests = {
         const draw = CanvasRenderingContext2D.prototype.fillText;
         CanvasRenderingContext2D.prototype.fillText = function (text, ...position) { texts.push(text), draw.call(this, text, ...position); };
         tactusView.page.timeline.draw();
-        return texts.filter((text) => /^force/.test(text));
+        return texts.filter((text) => /^(rendered )?force/.test(text));
       })()`);
       const legend = await tab.run("[...document.querySelectorAll('#legend div')].map((row) => row.textContent)");
       await tab.close();
-      return [drawn, legend.filter((text) => text.startsWith("force"))];
+      return [drawn, legend.filter((text) => /^(rendered )?force/.test(text))];
     };
     run("serve", "push-1dof", "--listen", "0", "--duration", "300ms", "-o", "served.mcap", "-f", "-q");
     assert.deepEqual(await named("served"), [["force of the server [N]"], ["force of the server"]]);
