@@ -21,12 +21,12 @@ std::shared_ptr<const VertexHierarchy> hierarchy(const DeformableObject& object)
 
 }  // namespace
 
-const MeshSupport kMeshSupport{.broken_rule = broken_deformable_rule,
-                               .is_solid = is_solid,
-                               .steps_stably = steps_stably,
-                               .elastic_work = elastic_work,
-                               .compute_basis = compute_basis,
-                               .hierarchy = hierarchy,
-                               .decoder = DeformableDecoder::create};
+const MeshSupport linked_mesh_support{.broken_rule = broken_deformable_rule,
+                                      .is_solid = is_solid,
+                                      .steps_stably = steps_stably,
+                                      .elastic_work = elastic_work,
+                                      .compute_basis = compute_basis,
+                                      .hierarchy = hierarchy,
+                                      .decoder = DeformableDecoder::create};
 
 }  // namespace tactus

@@ -30,6 +30,6 @@ struct MeshSupport {
                                                 std::unique_ptr<FollowedShape> shape);
 };
 
-extern const MeshSupport kMeshSupport;
+extern const MeshSupport linked_mesh_support;
 
 }  // namespace tactus

@@ -147,7 +147,7 @@ Result<void> find_broken_rule(const SceneSpec& spec, const MeshSupport* meshes, 
 }  // namespace
 
 Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits) try {
-  return find_broken_rule(spec, &kMeshSupport, limits);
+  return find_broken_rule(spec, &linked_mesh_support, limits);
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
@@ -170,7 +170,7 @@ Scene::Scene(SceneSpec&& spec, const MeshSupport* meshes)
 }
 
 Result<SharedScene> Scene::create(SceneSpec spec, const DecodeLimits& limits) {
-  return create(std::move(spec), &kMeshSupport, limits);
+  return create(std::move(spec), &linked_mesh_support, limits);
 }
 
 Result<SharedScene> Scene::create(SceneSpec&& spec, const MeshSupport* meshes, const DecodeLimits& limits) try {

@@ -211,7 +211,7 @@ struct SceneBuilder::MeshParts {
 };
 
 const SceneBuilder::MeshParts SceneBuilder::kMeshParts{
-    &kMeshSupport, [](Deformable& of, const SceneSpec& spec, bool is_nearly_exact) -> Result<DeformableObject> {
+    &linked_mesh_support, [](Deformable& of, const SceneSpec& spec, bool is_nearly_exact) -> Result<DeformableObject> {
       choose(of.coding, is_nearly_exact);
       TACTUS_TRY(DeformableObject object, make_deformable_object(of.name, of.surface, spec.grid.position));
       TACTUS_CHECK(apply(of.coding, spec.tick_rate, object));
