@@ -210,19 +210,22 @@ struct SceneBuilder::MeshParts {
   Result<DeformableObject> (*make)(Deformable& of, const SceneSpec& spec, bool is_nearly_exact);
 };
 
-const SceneBuilder::MeshParts SceneBuilder::kMeshParts{
-    &linked_mesh_support, [](Deformable& of, const SceneSpec& spec, bool is_nearly_exact) -> Result<DeformableObject> {
-      choose(of.coding, is_nearly_exact);
-      TACTUS_TRY(DeformableObject object, make_deformable_object(of.name, of.surface, spec.grid.position));
-      TACTUS_CHECK(apply(of.coding, spec.tick_rate, object));
-      if (of.coding.elastic) {
-        TACTUS_TRY(object.body, on_grid(std::move(*of.coding.elastic), spec.grid.position));
-      }
-      return object;
-    }};
+const SceneBuilder::MeshParts& SceneBuilder::mesh_parts() noexcept {
+  static constexpr MeshParts parts{
+      &linked_mesh_support, [](Deformable& of, const SceneSpec& spec, bool is_nearly_exact) -> Result<DeformableObject> {
+        choose(of.coding, is_nearly_exact);
+        TACTUS_TRY(DeformableObject object, make_deformable_object(of.name, of.surface, spec.grid.position));
+        TACTUS_CHECK(apply(of.coding, spec.tick_rate, object));
+        if (of.coding.elastic) {
+          TACTUS_TRY(object.body, on_grid(std::move(*of.coding.elastic), spec.grid.position));
+        }
+        return object;
+      }};
+  return parts;
+}
 
 SceneBuilder& SceneBuilder::deformable(std::string name, TriMesh surface, DeformableCoding coding) {
-  meshes_ = &kMeshParts;
+  meshes_ = &mesh_parts();
   deformables_.push_back({std::move(name), std::move(surface), std::move(coding)});
   return *this;
 }

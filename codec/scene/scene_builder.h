@@ -145,7 +145,7 @@ class SceneBuilder {
   std::vector<Rigid> rigid_;
   std::vector<Deformable> deformables_;
   struct MeshParts;
-  static const MeshParts kMeshParts;
+  static const MeshParts& mesh_parts() noexcept;
   const MeshParts* meshes_ = nullptr;  // what deformable() needs: a program that never calls it does not link that
   struct DeclaredBounds {
     RigidTriggers rigid;
