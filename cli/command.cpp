@@ -310,7 +310,7 @@ Failure wrong_use(const CLI::ParseError& error, const CLI::App& app) {
   if (option != left.end()) return unknown_option(*option, app);
   if (!left.empty() && !names_of_commands(app).empty()) return unknown_command(left.front(), app);
   Failure out = wrong_use(shown_keys(error.what()), app);
-  if (out.text.starts_with(kShownKey)) out.remedy = list_of_keys(app);
+  if (out.text.starts_with(kTune)) out.remedy = list_of_keys(app);
   return out;
 }
 

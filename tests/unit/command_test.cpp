@@ -149,8 +149,10 @@ TEST(Keys, WrongUsesNameWhatWouldBeRight) {
   EXPECT_EQ(failure({"--tune", "rings=99"}).text, "--tune rings: '99': too many");
   EXPECT_EQ(failure({"--tune", "rings=99"}).remedy, "`tactus encode --help-tune` lists the keys.");
   EXPECT_EQ(failure({"--tune", "layered=yes"}).text, "--tune layered: yes not in {on,off}");
-  for (const char* typed : {"rings", "rings=", "=5", ",rings=5", "rings=5,"})
+  for (const char* typed : {"rings", "rings=", "=5", ",rings=5", "rings=5,"}) {
     EXPECT_EQ(failure({"--tune", typed}).text, std::string("--tune: '") + typed + "': must be KEY=VALUE");
+    EXPECT_EQ(failure({"--tune", typed}).remedy, "`tactus encode --help-tune` lists the keys.");
+  }
   EXPECT_EQ(failure({"--tune.rings", "5"}).text, "--tune: '5': must be KEY=VALUE") << "a key is no option";
   EXPECT_EQ(failure({"--rings", "5"}).text, "tactus encode has no option --rings");
   EXPECT_EQ(failure({"--rings", "5"}).remedy, "--rings is now --tune rings=...");
