@@ -28,10 +28,10 @@ namespace tactus::cli {
 
 /// What was typed is looked at before it is stored.
 struct Check {
-  /// in   look  its answer: empty, or a sentence that names what was typed and says what is wrong
-  ///      range  what it accepts, for the list of keys: "0.1% to 100%"; empty: the help says it
+  /// in   how     its answer: empty, or a sentence that names what was typed and says what is wrong
+  ///      within  what it accepts, for the list of keys: "0.1% to 100%"; empty: the help says it
   template <std::invocable<const std::string&> Look>
-  Check(Look look, std::string range = {}) : look(std::move(look)), range(std::move(range)) {}
+  Check(Look how, std::string within = {}) : look(std::move(how)), range(std::move(within)) {}
 
   std::function<std::string(const std::string& typed)> look;
   std::string range;
