@@ -24,8 +24,8 @@ Result<std::optional<PlayedPacket>> Player::play(std::int64_t tick) noexcept {
   if (!due || *due > tick) return std::optional<PlayedPacket>{};
   const std::span<const std::uint8_t> bytes = waiting_->bytes;
   const auto offset = static_cast<std::size_t>(bytes.data() - file_.data());
+  const auto decoded = receiver_.push(waiting_->number, bytes);
   waiting_.reset();
-  const auto decoded = receiver_.push(bytes);
   if (!decoded) return fail_at(decoded.error(), 8 * std::uint64_t{offset} + decoded.error().bit_offset);
   if (decoded->tick != *due) return fail(Errc::invalid, "R-FIL-7", 8 * std::uint64_t{offset});
   return std::optional(PlayedPacket{*decoded, bytes.size(), offset});

@@ -42,10 +42,7 @@ struct Receiver::Impl {
     return out;
   }
 
-  Result<DecodedPacket> push(std::optional<std::uint64_t> number, std::span<const std::uint8_t> packet,
-                             std::optional<std::int64_t> now) noexcept;
-  Result<DecodedPacket> decode(std::optional<std::uint64_t> number, const SubstreamPacket& part,
-                               std::optional<std::int64_t> now) noexcept;
+  Result<DecodedPacket> decode(std::uint64_t number, const SubstreamPacket& part) noexcept;
 
   SharedScene scene;
   KnownDevice device;
@@ -77,33 +74,23 @@ Result<Receiver> Receiver::create_with(SharedScene scene, const ReceiverOptions&
   return out_of_memory();
 }
 
-Result<DecodedPacket> Receiver::Impl::decode(std::optional<std::uint64_t> number, const SubstreamPacket& part,
-                                             std::optional<std::int64_t> now) noexcept {
-  if (part.substream == 0) return number ? rigid.decode_numbered(*number, part.bytes) : rigid.decode(part.bytes, now);
-  if (part.substream > deformables.size())
-    return number ? loads->decode_numbered(*number, part.bytes) : loads->decode(part.bytes, now);
-  DeformableDecoder& object = *deformables[part.substream - 1];
-  return number ? object.decode_numbered(*number, part.bytes) : object.decode(part.bytes, now);
+Result<DecodedPacket> Receiver::Impl::decode(std::uint64_t number, const SubstreamPacket& part) noexcept {
+  if (part.substream == 0) return rigid.decode(number, part.bytes);
+  if (part.substream > deformables.size()) return loads->decode(number, part.bytes);
+  return deformables[part.substream - 1]->decode(number, part.bytes);
 }
 
-Result<DecodedPacket> Receiver::Impl::push(std::optional<std::uint64_t> number, std::span<const std::uint8_t> packet,
-                                           std::optional<std::int64_t> now) noexcept {
-  TACTUS_TRY(const SubstreamPacket part, split_substream(*scene, packet));
-  auto decoded = decode(number, part, now);
+Result<DecodedPacket> Receiver::push(std::uint64_t number, std::span<const std::uint8_t> packet,
+                                     std::optional<std::int64_t> now) noexcept {
+  if (!is_number(number)) return fail(Errc::invalid_argument, "R-API-5");
+  TACTUS_TRY(const SubstreamPacket part, split_substream(*impl_->scene, packet));
+  auto decoded = impl_->decode(number, part);
   if (!decoded) {
     const Error& error = decoded.error();
     return fail_at(error, error.bit_offset + 8 * (packet.size() - part.bytes.size()));
   }
-  if (part.substream == 0) replica.apply(*decoded, rigid.after(*decoded), now.value_or(decoded->tick));
+  if (part.substream == 0) impl_->replica.apply(*decoded, impl_->rigid.after(*decoded), now.value_or(decoded->tick));
   return decoded;
-}
-
-Result<DecodedPacket> Receiver::push(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept {
-  return impl_->push({}, packet, now);
-}
-
-Result<DecodedPacket> Receiver::push_numbered(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept {
-  return impl_->push(number, packet, {});
 }
 
 void Receiver::skip_number(std::uint64_t number) noexcept { impl_->replica.skip_number(number); }

@@ -28,15 +28,10 @@ struct ReceiverOptions {
 
 /// Keeps the newest `baseline_span` states of each substream and nothing else.
 ///
-/// Packets may be lost, repeated, or come in any order, late by up to 127 packets. A packet is decoded from exactly the baseline that
-/// it was coded against, or it is refused.
-/// With a clock (`now`) this holds after outages of any length. Baselines that became ambiguous are dropped, and the next key
-/// packet is accepted whatever its number and tick. The same happens when another sender of this scene, or a restarted one, is
-/// heard. spec/25-packet.md 4 and 5.
-/// The receiver cannot detect:
-///   damaged bytes: the transport must carry a check value;
-///   another or restarted sender whose first packet to arrive is up to 127 numbers before the newest or baseline_span after it;
-///   without a clock, an outage of n packets with n mod 65536 < baseline_span or >= 65408.
+/// Packets may be lost, repeated, or come in any order, after an outage of any length. A packet is decoded from exactly the baseline that
+/// it was coded against, or it is refused. spec/25-packet.md 4 and 5.
+/// The receiver cannot detect damaged bytes (the transport must carry a check value) or another sender: what a restarted one sends goes to a
+/// new receiver.
 ///
 /// Threads: one at a time. The scene is shared. No allocation and no exception after create().
 class Receiver {
@@ -47,26 +42,22 @@ class Receiver {
   /// in   device  its path; null: it is not known
   static Result<Receiver> create(SharedScene scene, const ReceiverOptions& options, std::shared_ptr<const DevicePath> device);
 
-  /// Decode a packet and apply it to the replica. An error leaves the receiver unchanged, but R-PKT-7 drops its baselines.
-  /// in   packet  as Packet::bytes
-  ///      now     [ticks] time of arrival on the receiver's own clock, any origin. Packets of a file need none: each counts as
-  ///              arriving in its own tick (R-FIL-7)
-  /// out  what to acknowledge: substream and sequence
+  /// Decode a packet and apply it to the replica. An error leaves the receiver unchanged.
+  /// in   number, packet  as Packet::number and Packet::bytes: the transport tells both
+  ///      now     [ticks] of this client when it shows it; without: the packet's own
+  /// out  what to acknowledge: substream and number
   /// time < 2 us for one rigid update; 60 us for 714 vertices and 48 modes; no allocation.
   /// err  advice() says how to react. truncated, malformed, invalid: R-PKT, R-RIG, R-DEF, R-RNG; limit_exceeded R-PKT-1;
   ///      state R-PKT-5: the packet was decoded before, or comes later than all that are held; R-PKT-4: its baseline is not held, as
-  ///      an earlier packet is lost or late; R-PKT-7: its number belongs to another sender or follows a long outage, and all baselines
-  ///      are dropped
-  Result<DecodedPacket> push(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now = {}) noexcept;
+  ///      an earlier packet is lost or late; invalid_argument R-API-5: a number of 0, or of 2^62 and more
+  Result<DecodedPacket> push(std::uint64_t number, std::span<const std::uint8_t> packet,
+                             std::optional<std::int64_t> now = {}) noexcept;
 
-  /// The same for a packet of a session, which knows its number (Sender::encode_numbered) and when it is lost: R-PKT-7 does not occur.
-  /// in   number  above 0
-  Result<DecodedPacket> push_numbered(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept;
-
-  /// A packet of a session is decoded, and its state may be a baseline: it came before.   in  number, packet  as push_numbered()
+  /// The packet is decoded, and its state may be a baseline: it came before.   in  number, packet  as push()
   bool holds(std::uint64_t number, std::span<const std::uint8_t> packet) const noexcept;
 
-  /// This number of a session is not lost, and no packet of rigid objects has it: the replica need not interpolate over it.
+  /// This number arrived, and no packet of rigid objects has it: the replica need not interpolate over it. For transports whose numbers are
+  /// not those of packets of rigid objects alone.
   void skip_number(std::uint64_t number) noexcept;
 
   /// Pose of a rigid object as shown at `tick`: what Replica::pose() has in integers.
@@ -83,7 +74,7 @@ class Receiver {
   Replica& replica() noexcept;
 
   const SharedScene& scene() const noexcept;
-  /// State of a rigid object after a packet of them.   pre  push() or push_numbered() has just returned it
+  /// State of a rigid object after a packet of them.   pre  push() has just returned it
   const RigidState& object_after(const DecodedPacket& packet, std::uint32_t object) const noexcept;
   /// Newest state of a rigid object, by its index in the scene.
   const RigidState& object(std::uint32_t object) const noexcept;

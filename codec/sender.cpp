@@ -56,9 +56,11 @@ struct Sender::Impl {
     return policy;
   }
   Result<void> read(std::int64_t tick, const Truth& truth) noexcept;
-  Result<std::span<const Packet>> encode(std::optional<std::uint64_t> number, std::int64_t tick, const Truth& truth) noexcept;
+  Result<std::span<const Packet>> encode(std::int64_t tick, const Truth& truth, std::optional<std::uint64_t> number) noexcept;
   void add(const Packet& packet) noexcept {
-    if (!packet.bytes.empty()) packets.push_back(packet);
+    if (packet.bytes.empty()) return;
+    packets.push_back(packet);
+    last_number = std::max(last_number, packet.number);
   }
 
   SharedScene scene;
@@ -70,6 +72,7 @@ struct Sender::Impl {
   std::optional<SubstreamEncoder<LoadEncoder>> loads;
   std::vector<Packet> packets;  // of this tick
   std::int64_t last_tick = -1;
+  std::uint64_t last_number = 0;
 };
 
 /// As many of everything as the scene has.
@@ -105,8 +108,9 @@ Result<void> Sender::Impl::read(std::int64_t tick, const Truth& truth) noexcept 
   return {};
 }
 
-Result<std::span<const Packet>> Sender::Impl::encode(std::optional<std::uint64_t> number, std::int64_t tick,
-                                                     const Truth& truth) noexcept {
+Result<std::span<const Packet>> Sender::Impl::encode(std::int64_t tick, const Truth& truth,
+                                                     std::optional<std::uint64_t> number) noexcept {
+  if (number && (*number <= last_number || !is_number(*number + 1))) return fail(Errc::invalid_argument, "R-API-5");
   TACTUS_CHECK(read(tick, truth));
   packets.clear();
   if (!scene->moving().empty()) {
@@ -184,12 +188,9 @@ Result<Sender> Sender::create_with(SharedScene scene, const SenderOptions& optio
   return out_of_memory();
 }
 
-Result<std::span<const Packet>> Sender::encode(std::int64_t tick, const Truth& truth) noexcept {
-  return impl_->encode({}, tick, truth);
-}
-
-Result<std::span<const Packet>> Sender::encode_numbered(std::uint64_t number, std::int64_t tick, const Truth& truth) noexcept {
-  return impl_->encode(number, tick, truth);
+Result<std::span<const Packet>> Sender::encode(std::int64_t tick, const Truth& truth,
+                                               std::optional<std::uint64_t> number) noexcept {
+  return impl_->encode(tick, truth, number);
 }
 
 std::span<const HeldPart> Sender::held() const noexcept { return impl_->truth().held.parts(); }
@@ -202,10 +203,10 @@ void Sender::request_key() noexcept {
 
 void Sender::request_rigid_key() noexcept { impl_->rigid.request_key(); }
 
-void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept {
-  if (substream == 0) impl_->rigid.acknowledge(sequence);
-  else if (substream <= impl_->deformables.size()) impl_->deformables[substream - 1]->acknowledge(sequence);
-  else if (impl_->loads && substream == load_substream(*impl_->scene)) impl_->loads->acknowledge(sequence);
+void Sender::acknowledge(std::size_t substream, std::uint64_t number) noexcept {
+  if (substream == 0) impl_->rigid.acknowledge(number);
+  else if (substream <= impl_->deformables.size()) impl_->deformables[substream - 1]->acknowledge(number);
+  else if (impl_->loads && substream == load_substream(*impl_->scene)) impl_->loads->acknowledge(number);
 }
 
 void Sender::set_link(const LinkState& link) noexcept {

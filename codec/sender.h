@@ -104,18 +104,19 @@ class Sender {
                                std::shared_ptr<const DevicePath> device);
 
   /// Evaluate one tick and code the packets that it needs.
-  /// in   tick  strictly increasing, below 2^32 - 1
+  /// in   tick    strictly increasing, below 2^32 - 1
+  ///      number  of the packets of this tick, above that of any packet before and below 2^62 - 1, as a transport numbers what it sends; a
+  ///              second packet of an object has number + 1. A receiver with Interpolation::playout is told of numbers without a packet of
+  ///              rigid objects: Receiver::skip_number(). Without: each substream counts on, from 1, as files do.
   /// out  at most one packet per substream, two for a layered object, its haptic layer first. Valid until the next call: bind the
   ///      Result to a name before iterating over it
   /// time < 1 us per rigid object that moves, while contacts are few (each object looks at all of them); those that rest 10 ns;
   ///      O(V * (1 + modes)) per new shape, 100 us for 714 vertices and 48 modes.
   /// A jump of more than 2^31 steps of the position grid, 512 m by default, takes two updates, in two ticks.
-  /// err  invalid_argument R-API-5 wrong count or order of ticks: what the caller as a whole did wrong. An error leaves the sender unchanged.
-  Result<std::span<const Packet>> encode(std::int64_t tick, const Truth& truth) noexcept;
-
-  /// The same for a session, which numbers its datagrams: packets do not carry their numbers.
-  /// in   number  of the packets of this tick, above that of any packet before; a second packet of an object has number + 1
-  Result<std::span<const Packet>> encode_numbered(std::uint64_t number, std::int64_t tick, const Truth& truth) noexcept;
+  /// err  invalid_argument R-API-5 wrong count or order of ticks or numbers: what the caller as a whole did wrong. An error leaves the sender
+  ///      unchanged.
+  Result<std::span<const Packet>> encode(std::int64_t tick, const Truth& truth,
+                                         std::optional<std::uint64_t> number = {}) noexcept;
 
   /// Parts of the truth of the last encode() that are held: those that are not finite (R-API-1), off the grid (R-API-2), no rotation
   /// (R-API-3) or off their axes (R-API-6), and contacts and touches that are none (R-API-15), 16 contacts at most. Mostly none.
@@ -130,8 +131,8 @@ class Sender {
 
   /// Report that the receiver has decoded a packet. Report all of them, in any order: the newest is the next baseline, and objects
   /// that others named are not sent again. Numbers of no packet, or of one long ago, are ignored.
-  /// in  substream, sequence  as in Packet
-  void acknowledge(std::size_t substream, std::uint16_t sequence) noexcept;
+  /// in  substream, number  as in Packet
+  void acknowledge(std::size_t substream, std::uint64_t number) noexcept;
 
   /// Report what the link to the receiver and back does. With Baseline::acknowledged the newest state of an object is sent again, made
   /// anew, while no acknowledgement names a packet that held it; of a deformable object without layers, where packets get lost.
@@ -146,9 +147,8 @@ class Sender {
   /// in   viewpoints  [m] at most two: its device, and its eyes or whatever stands for them. Others are ignored.   time 10 ns
   void set_viewpoints(std::span<const Vec3> viewpoints) noexcept;
 
-  /// Report that the newest packet of this substream will not be decoded (it is dropped, or known to be lost). The next one
-  /// builds on the state before it, or on the initial state if the scene's baseline_span does not reach that far. At most once
-  /// per packet.
+  /// Report that the newest packet of this substream is dropped and was never sent. The next one builds on the state before it, and has its
+  /// number where packets are counted. At most once per packet. One that was sent and is lost is not acknowledged, which says enough.
   void forget_last(std::size_t substream) noexcept;
 
   const SharedScene& scene() const noexcept;

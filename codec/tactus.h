@@ -16,7 +16,7 @@
 ///       const auto packets = sender->encode(tick, {.objects = {&cube, 1}});
 ///       if (!packets) return 1;
 ///       for (const tactus::Packet& packet : *packets)      // mostly none: the receiver predicts
-///         if (!receiver->push(packet.bytes)) return 1;     // this is where a network would be
+///         if (!receiver->push(packet.number, packet.bytes)) return 1;     // this is where a network would be
 ///     }
 ///     const tactus::Pose shown = receiver->pose(0, 999);
 ///     std::printf("the client shows x = %.3f m\n", shown.position.x);

@@ -92,6 +92,9 @@ class Recorder(RangeDecoder):
     def signed_like(self, models, model, like):
         return self.note(models.name, super().signed_like, models, model, like)
 
+    def nonzero_like(self, models, model, like):
+        return self.note(models.name, super().nonzero_like, models, model, like)
+
 
 class Writer:
     """A range decoder that is given what it decodes, and encodes it. The payloads of a packet are in `made`."""
@@ -127,22 +130,33 @@ class Writer:
         return value
 
     def magnitude(self, models) -> int:
-        value = self.take(models.name, 0, (1 << 32) - 1)
+        value = self.take(models.name, 0, 1 << 32)
         self.encoder.magnitude(models, value)
+        require(value < 1 << 32, "malformed", "R-RNG-4")
         return value
 
     def signed(self, models) -> int:
-        value = self.take(models.name, -(1 << 32) + 1, (1 << 32) - 1)
+        value = self.take(models.name, -1 << 32, 1 << 32)
         self.encoder.signed(models, value)
         require(abs(value) < 1 << 31, "malformed", "R-RNG-4")
         return value
 
     def signed_like(self, models, model, like: int) -> int:
-        if like == 0:
-            return self.signed(models)
-        value = self.take(models.name, -(1 << 32) + 1, (1 << 32) - 1)
+        value = self.take(models.name, -1 << 32, 1 << 32)
         self.encoder.magnitude(models, abs(value))
-        if value:
+        return self.with_sign(value, model, like) if value else 0
+
+    def nonzero_like(self, models, model, like: int) -> int:
+        value = self.take(models.name, -1 << 32, 1 << 32)
+        if value == 0:
+            raise CaseError(f"{models.name} is 0")
+        self.encoder.magnitude(models, abs(value) - 1)
+        return self.with_sign(value, model, like)
+
+    def with_sign(self, value: int, model, like: int) -> int:
+        if like == 0:
+            self.encoder.raw(1, int(value < 0))
+        else:
             self.encoder.bit(model, int((value < 0) != (like < 0)))
         require(abs(value) < 1 << 31, "malformed", "R-RNG-4")
         return value
@@ -198,16 +212,15 @@ def taken_head(data: bytes, span: int) -> tuple[list[Element], int]:
 
 
 # ---- Packets --------------------------------------------------------------------------------------------------------
-def given_packet(decoder, sequence: int, elements: list[Element]):
+def given_packet(decoder, number: int, elements: list[Element]):
     """A packet's bytes, and what is decoded from it or None. The decoder goes on as if it had received it."""
     given = Writer.elements = Elements(elements, ("append", "list_bytes"))
     Writer.made = []
     head = given_head(given) if is_thesis(decoder) else None
-    start = sequence.to_bytes(2, "little")
     placeholder = head[0] + b"\0" + head[1] if head else b""
     packet = None
     try:
-        packet = decoder.decode(start + placeholder)
+        packet = decoder.decode(number, placeholder)
     except (StreamError, NoMore):
         pass
     then = bytes_of(given.take("then")) if given.next_name() == "then" else None
@@ -220,17 +233,17 @@ def given_packet(decoder, sequence: int, elements: list[Element]):
         listed = payloads[0] if payloads else b""
         size = given.apart.get("list_bytes", len(listed))
         payloads[:1] = [head[0] + varint_bytes(size) + head[1] + listed]
-    return start + b"".join(payloads) + bytes_of(given.apart.get("append", "#")), packet
+    return b"".join(payloads) + bytes_of(given.apart.get("append", "#")), packet
 
 
-def taken_elements(decoder, data: bytes) -> list[Element]:
+def taken_elements(decoder, number: int, data: bytes) -> list[Element]:
     """What is decoded from a packet, up to the first fault; the decoder is left as if it had received it."""
     Recorder.elements = []
     head: list[Element] = []
     if is_thesis(decoder):
-        head, _ = taken_head(data[2:], decoder.receiver.span)
+        head, _ = taken_head(data, decoder.receiver.span)
     try:
-        decoder.decode(data)
+        decoder.decode(number, data)
     except StreamError:
         pass
     return head + Recorder.elements

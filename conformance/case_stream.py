@@ -11,7 +11,7 @@ from case_text import Block, CaseError, Element, bytes_of, digits, parse, words
 from conventions import Cursor, StreamError
 from decoder import SceneDecoder
 from declaration_syntax import given_declaration, taken_declaration, varint_bytes
-from file import INDEX, PACKET, TRAILER
+from file import INDEX, NUMBERED, PACKET, PACKETS, TRAILER
 from packet import Receiver
 from range_coder import RangeDecoder
 from scene import Declaration, read_declaration
@@ -37,6 +37,7 @@ class Decoders:
 
     def __init__(self, declaration: bytes):
         self.tick = 0                                       # of the packet record before
+        self.numbers: dict[bytes, int] = {}                 # of the packet record before, by substream byte
         try:
             self.scene: Optional[SceneDecoder] = SceneDecoder(scene_of(declaration))
         except StreamError:
@@ -49,18 +50,21 @@ class Decoders:
     def several(self) -> bool:
         return self.scene is not None and len(self.scene.substreams) > 1
 
-    def follow(self, data: bytes) -> None:
+    def byte(self, part: Optional[int]) -> bytes:
+        """The substream byte."""
+        return bytes([part]) if part is not None and self.several() else b""
+
+    def next_number(self, byte: bytes) -> int:
+        return self.numbers.get(byte, 0) + 1
+
+    def follow(self, number: int, data: bytes) -> None:
         """Receives a packet as any decoder does."""
         install(RangeDecoder)
         try:
-            number, packet = self.scene.split(data)
-            self.scene.substreams[number].decode(packet)
+            substream, packet = self.scene.split(data)
+            self.scene.substreams[substream].decode(number, packet)
         except StreamError:
             pass
-
-
-def next_number(receiver: Receiver) -> int:
-    return (receiver.newest + 1) % (1 << 16) if receiver.kept else 0
 
 
 def state_of(receiver: Receiver) -> dict:
@@ -78,36 +82,50 @@ def split_elements(elements: list[Element], names: tuple) -> tuple[dict, list[El
     return {k: v for k, v in elements if k in names}, [e for e in elements if e[0] not in names]
 
 
-def packet_of(decoders: Decoders, text: str, before: list[bytes]) -> bytes:
-    """A packet record. Its tick is the packet's unless `after` says otherwise."""
+def head_of(text: str) -> tuple[dict, str]:
+    """What stands before the colon of a packet, and what after it."""
     head, _, rest = text.rpartition(":")
-    fields = dict(parse(head))
+    return dict(parse(head)), rest
+
+
+def packet_of(decoders: Decoders, text: str, before: list[bytes], kind: int) -> bytes:
+    """A packet record. Its tick is the packet's unless `after` says otherwise."""
+    fields, rest = head_of(text)
     elements = parse(rest)
     over, elements = split_elements(elements, ("size", "crc", "after"))
     packet = None
     if elements and elements[0][0] in ("hex", "again"):
         name, value = elements[0]
         data = bytes_of(value) if name == "hex" else before[value]
-        if decoders.scene:
-            decoders.follow(data)
+        byte = data[:1] if decoders.several() else b""
+        number = fields.get("number", decoders.next_number(byte))
+        if decoders.scene and isinstance(number, int):
+            decoders.follow(number, data)
     else:
         part = fields.get("of")
+        byte = decoders.byte(part)
+        number = fields.get("number", decoders.next_number(byte))
         decoder = decoders.of(part)
         if decoder is None:
             raise CaseError(f"there is no substream {part}")
+        if not isinstance(number, int):
+            raise CaseError("a number in hexadecimal digits goes with `hex`")
         kept = state_of(decoder.receiver)
         install(Writer)
-        data, packet = given_packet(decoder, fields.get("number", next_number(decoder.receiver)), elements)
-        data = (bytes([part]) if decoders.several() else b"") + data
+        data, packet = given_packet(decoder, number, elements)
+        data = byte + data
         if any(name in ("then", "append", "list_bytes") for name, _ in elements):
             decoder.receiver.__dict__.update(kept)
-            decoders.follow(data)
+            decoders.follow(number, data)
     before.append(data)
     after = over.get("after", packet.tick - decoders.tick if packet else 0)
-    if not isinstance(after, int):
-        return record(PACKET, bytes_of(after) + data, over)
-    decoders.tick += after
-    return record(PACKET, varint_bytes(after) + data, over)
+    start = varint_bytes(after) if isinstance(after, int) else bytes_of(after)
+    decoders.tick += after if isinstance(after, int) else 0
+    if isinstance(number, int):
+        decoders.numbers[byte] = number
+    if kind == NUMBERED:
+        start += varint_bytes(number) if isinstance(number, int) else bytes_of(number)
+    return record(kind, start + data, over)
 
 
 def other_record(block: Block) -> bytes:
@@ -138,6 +156,7 @@ def declaration_elements(text: str, scenes: dict[str, list[Element]]) -> list[El
 def stream_of(blocks: list[Block], name: str, earlier: Earlier) -> bytes:
     """The bytes of a case's stream."""
     data, decoders, before = b"", None, []
+    kind = NUMBERED if any("number" in head_of(block.text)[0] for block in blocks if block.kind == "packet") else PACKET
     for block in blocks:
         if block.kind == "scene":
             earlier.scenes[name] = declaration_elements(block.text, earlier.scenes)
@@ -146,7 +165,7 @@ def stream_of(blocks: list[Block], name: str, earlier: Earlier) -> bytes:
             data = earlier.streams[block.text.removeprefix("as ")]
         elif block.kind == "packet":
             decoders = decoders or Decoders(data)
-            data += packet_of(decoders, block.text, before)
+            data += packet_of(decoders, block.text, before, kind)
         elif block.kind == "bytes":
             data += b"".join(bytes_of(value) for _, value in parse(block.text))
         elif block.kind in ("index", "trailer", "record"):
@@ -191,12 +210,14 @@ class Records:
 
     def __init__(self, declaration: bytes):
         self.taken, self.given = Decoders(declaration), Decoders(declaration)
+        self.kind = 0                                       # of packet records
         self.before: list[bytes] = []
         self.unreadable = 0                                 # bytes in hexadecimal digits
 
     def block(self, kind: int, payload: bytes, over: list[Element]) -> Optional[Block]:
         more = words(over)
-        if kind == PACKET:
+        if kind in PACKETS and self.kind in (0, kind):
+            self.kind = kind
             return self.packet(payload, over)
         if kind == INDEX:
             values, rest = [], Cursor(payload, 0, len(payload))
@@ -214,69 +235,77 @@ class Records:
 
     def packet(self, payload: bytes, over: list[Element]) -> Block:
         cursor = Cursor(payload, 0, len(payload))
+        number, after, start = 0, None, 0
         try:
             after = cursor.varint(CUT, CUT)
+            start = cursor.position
+            number = cursor.varint(CUT, CUT) if self.kind == NUMBERED else 0
         except StreamError:
             self.unreadable += len(payload)
-            return Block("packet", " ".join(words([("hex", "#"), ("after", digits(payload)), *over])))
+            rest = digits(payload[start:])
+            head = "number #" if after is None else f"number {rest}"
+            head = f"{head}: " if self.kind == NUMBERED else ""
+            return Block("packet", head + " ".join(words([("hex", "#"), ("after", rest if after is None else after), *over])))
         data = payload[cursor.position:]
-        for text in self.texts(data):
+        for text in self.texts(number, data):
             for with_after in ([], [("after", after)]):
                 block = Block("packet", " ".join([text, *words([*with_after, *over])]))
                 kept = {n: state_of(d.receiver) for n, d in self.given.scene.substreams.items()} if self.given.scene else {}
-                tick, count = self.given.tick, len(self.before)
+                tick, numbers, count = self.given.tick, dict(self.given.numbers), len(self.before)
                 try:
-                    made = packet_of(self.given, block.text, self.before)
+                    made = packet_of(self.given, block.text, self.before, self.kind)
                 except (CaseError, TypeError, AttributeError, IndexError, KeyError, OverflowError, ValueError):
                     made = b""
-                if made == record(PACKET, payload, dict(over)):
+                if made == record(self.kind, payload, dict(over)):
                     return block
                 for n, state in kept.items():
                     self.given.scene.substreams[n].receiver.__dict__.update(state)
-                self.given.tick = tick
+                self.given.tick, self.given.numbers = tick, numbers
                 del self.before[count:]
         raise CaseError("a packet cannot be written")
 
-    def texts(self, data: bytes):
+    def texts(self, number: int, data: bytes):
         """The ways to say a packet, the most readable one first."""
+        byte = data[:1] if self.given.several() else b""
+        following = self.given.next_number(byte)
+        number = number if self.kind == NUMBERED else following
+        given = [("number", number)] if number != following or self.kind == NUMBERED and not self.given.numbers else []
         if data in self.before and len(data) > 2:
-            yield f"again {self.before.index(data)}"
+            yield self.head(given) + f"again {self.before.index(data)}"
         split = None
         if self.taken.scene:
             try:
-                number, packet = self.taken.scene.split(data)
-                split = (number, packet, self.taken.scene.substreams[number]) if len(packet) >= 2 else None
+                part, packet = self.taken.scene.split(data)
+                split = (part, packet, self.taken.scene.substreams[part])
             except StreamError:
                 pass
         if split:
-            number, packet, decoder = split
+            part, packet, decoder = split
             install(Recorder)
             try:
-                elements = taken_elements(decoder, packet)
+                elements = taken_elements(decoder, number, packet)
             except (StreamError, IndexError):
                 elements = []
-                self.taken.follow(data)
-            head = self.head(number, packet[0] | packet[1] << 8)
-            yield " ".join([head, *words(elements)]).strip()
-            yield from self.edited(number, head, elements, packet)
+                self.taken.follow(number, data)
+            head = self.head([*([("of", part)] if self.given.several() else []), *given])
+            yield " ".join([head.strip(), *words(elements)]).strip()
+            yield from self.edited(part, number, head.strip(), elements, packet)
         self.unreadable += len(data)
-        yield " ".join(words([("hex", digits(data))]))
+        yield self.head(given) + " ".join(words([("hex", digits(data))]))
 
-    def head(self, part: int, sequence: int) -> str:
-        """Which packet it is; a number that follows the newest one is left out."""
-        fields = [("of", part)] if self.given.several() else []
-        if sequence != next_number(self.given.scene.substreams[part].receiver):
-            fields.append(("number", sequence))
-        return " ".join(words(fields)) + (":" if fields else "")
+    @staticmethod
+    def head(fields: list[Element]) -> str:
+        """Which packet it is; a number that follows the one before is left out."""
+        return " ".join(words(fields)) + (": " if fields else "")
 
-    def edited(self, number: int, head: str, elements: list[Element], packet: bytes):
+    def edited(self, part: int, number: int, head: str, elements: list[Element], packet: bytes):
         """With other bytes after what is decoded. How many that are is tried out on the decoders of the given side."""
-        given = self.given.scene.substreams[number]
+        given = self.given.scene.substreams[part]
         for more in ([], [("then", "#")]):
             kept = state_of(given.receiver)
             install(Writer)
             try:
-                made, _ = given_packet(given, packet[0] | packet[1] << 8, elements + more)
+                made, _ = given_packet(given, number, elements + more)
             except (CaseError, OverflowError, IndexError):
                 made = None
             given.receiver.__dict__.update(kept)

@@ -13,7 +13,7 @@ import zlib
 from case_text import CaseError, Element, Elements, Value, bytes_of, digits
 from conventions import Cursor, StreamError
 from deformable_header import CLUSTERS, COMPUTED, DECLARED, MAIN, THESIS, zigzag
-from scene import BOUNDS, HAS_BODIES, HAS_DEFORMABLES, HAS_INTEREST, HAS_LOADS, HAS_MOTION, IS_DRIVEN, MAGIC, STIFFNESS
+from scene import BOUNDS, HAS_BODIES, HAS_DEFORMABLES, HAS_INTEREST, HAS_LOADS, HAS_MOTION, IS_DRIVEN, MAGIC, STIFFNESS, VERSION
 
 FIXED = struct.Struct("<4sBBHI")
 APART = ("magic", "version", "stream_profile", "body_size", "crc", "cut")
@@ -314,7 +314,7 @@ def taken_declaration(data: bytes) -> tuple[list[Element], int]:
     f = Taken(content)
     f.add("flags", flags)
     body(f, flags)
-    for name, value, usual in (("magic", digits(magic), digits(MAGIC)), ("version", version, 1), ("stream_profile", profile, 0),
+    for name, value, usual in (("magic", digits(magic), digits(MAGIC)), ("version", version, VERSION), ("stream_profile", profile, 0),
                                ("body_size", body_size, len(content))):
         if value != usual:
             f.add(name, value)
@@ -335,7 +335,7 @@ def given_declaration(elements: list[Element]) -> bytes:
     if given.next_name() is not None:
         raise CaseError(f"the declaration ends before {given.next_name()}")
     apart = given.apart
-    head = FIXED.pack(bytes_of(apart.get("magic", digits(MAGIC))), apart.get("version", 1), apart.get("stream_profile", 0), flags,
+    head = FIXED.pack(bytes_of(apart.get("magic", digits(MAGIC))), apart.get("version", VERSION), apart.get("stream_profile", 0), flags,
                       apart.get("body_size", len(f.out)))
     data = head + bytes(f.out)
     return data + (bytes_of(apart["crc"]) if "crc" in apart else zlib.crc32(data).to_bytes(4, "little"))

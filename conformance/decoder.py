@@ -33,15 +33,16 @@ class SceneDecoder:
 
     def __init__(self, scene: Declaration, limits: Limits = Limits()):
         self.substreams: dict[int, Union[RigidDecoder, DeformableDecoder, LoadDecoder]] = {}
-        if scene.moving() or not scene.deformables:
-            self.substreams[0] = RigidDecoder(scene, limits)
-        for number, item in enumerate(scene.deformables, start=1):
-            self.substreams[number] = DeformableDecoder(scene, item, limits)
-        if scene.loads:
-            self.substreams[len(scene.deformables) + 1] = LoadDecoder(scene, limits)
+        for substream in scene.substreams():
+            if substream == 0:
+                self.substreams[substream] = RigidDecoder(scene, limits)
+            elif substream <= len(scene.deformables):
+                self.substreams[substream] = DeformableDecoder(scene, scene.deformables[substream - 1], limits)
+            else:
+                self.substreams[substream] = LoadDecoder(scene, limits)
 
     def split(self, data: bytes) -> tuple[int, bytes]:
-        """The substream of a packet, and the packet without that number."""
+        """The substream of a packet, and the packet without its byte."""
         if len(self.substreams) == 1:
             return next(iter(self.substreams)), data
         require(len(data) >= 1, "truncated", "R-PKT-6")
@@ -77,7 +78,7 @@ def describe_declaration(scene: Declaration) -> dict:
 
 
 def describe_packet(packet: Union[Packet, DeformablePacket, LoadPacket]) -> dict:
-    out = {"sequence": packet.sequence, "key": bool(packet.key), "tick": packet.tick}
+    out = {"number": packet.number, "key": bool(packet.key), "tick": packet.tick}
     if isinstance(packet, LoadPacket):
         out["loads"] = packet.loads
     else:
@@ -93,13 +94,13 @@ def lines(data: bytes, mode: Optional[str]) -> Iterator[dict]:
     several = len(decoders.substreams) > 1
     yield {"header": describe_declaration(file.declaration)}
     count = 0
-    for tick, record in file.packets():
+    for tick, number, data in file.packets():
         if viewer:
             viewer.look_until(tick)
-        number, packet_bytes = decoders.split(record)
-        decoder = decoders.substreams[number]
-        packet = decoder.decode(packet_bytes, tick)
-        line = {"packet": count, **({"part": number} if several else {}), **describe_packet(packet),
+        substream, packet_bytes = decoders.split(data)
+        decoder = decoders.substreams[substream]
+        packet = decoder.decode(number, packet_bytes, tick)
+        line = {"packet": count, **({"part": substream} if several else {}), **describe_packet(packet),
                 "state": f"{decoder.state_hash():016x}"}
         if viewer:
             viewer.apply(packet, tick)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class DeformablePacket(NamedTuple):
-    sequence: int
+    number: int
     key: int
     vertices: list[int]                                     # that have a residual of their own
     range: int                                              # final state of the range decoder
@@ -31,15 +31,15 @@ class DeformablePacket(NamedTuple):
 class DeformableDecoder:
     def __init__(self, scene: Declaration, item: DeformableObject, limits: Limits = Limits()):
         self.codec = MainCodec(item) if item.profile == MAIN else ThesisCodec(item)
-        self.receiver = Receiver(self.codec.initial, scene.baseline_span, limits.packet_size, scene.tick_rate)
+        self.receiver = Receiver(self.codec.initial, scene.baseline_span, limits.packet_size)
 
-    def decode(self, data: bytes, record_tick: Optional[int] = None, now: Optional[int] = None) -> DeformablePacket:
-        """Decodes one packet, of a record at `record_tick` or that arrives at `now`; an error leaves the decoder unchanged."""
-        number = self.receiver.open(data, now)
-        state, key, vertices, decoder = self.codec.decode(data[2:], self.receiver, number)
+    def decode(self, number: int, data: bytes, record_tick: Optional[int] = None) -> DeformablePacket:
+        """Decodes the packet of a number, in a file of a record at `record_tick`; an error leaves the decoder unchanged."""
+        self.receiver.open(number, data)
+        state, key, vertices, decoder = self.codec.decode(data, self.receiver, number)
         require(record_tick in (None, state.tick), "invalid", "R-FIL-7")
-        self.receiver.accept(number, key, state, now)
-        return DeformablePacket(number % (1 << 16), key, vertices, decoder.range, decoder.code, state)
+        self.receiver.accept(number, state)
+        return DeformablePacket(number, key, vertices, decoder.range, decoder.code, state)
 
     def shown(self, tick: int, playout: bool = False, shapes: Optional[Shapes] = None) -> list[int]:
         """The displacements that a client shows at a tick; one before the state's counts as that.

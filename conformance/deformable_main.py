@@ -187,7 +187,7 @@ class MainCodec:
         else:
             tick_delta = max(0, round_shift(self.item.frame_period, 8) + decoder.signed(models["LATE"]))
         base = receiver.baseline(number, key, baseline_delta)
-        return Start(key, layer, same_frame, base, receiver.tick(number, base, key, tick_delta, "R-DEF-8"))
+        return Start(key, layer, same_frame, base, receiver.tick(number, base, tick_delta, "R-DEF-8"))
 
     def read_head(self, decoder: RangeDecoder, models: Models, start: Start) -> MainState:
         state = start.base if start.same_frame else self.read_bounds(decoder, models, start)
@@ -248,6 +248,7 @@ class MainCodec:
         h = haptic_bound(state.haptic_index)
         corrections: dict[int, tuple] = {}
         coded: dict[int, int] = {}
+        residual_of: dict[int, tuple] = {}                  # of the vertices that the packet codes
         parents, weights = self.hierarchy.parents[state.weight_set], self.hierarchy.weights[state.weight_set]
         for v in self.hierarchy.order:
             if known.codes(v):
@@ -257,23 +258,44 @@ class MainCodec:
                 p, w = parents[v], weights[v]
                 depth = min(2, self.hierarchy.depth[v])
                 near = min(2, sum(coded[i] for i in p))
-                r = [0, 0, 0]
+                s = [sum(a * corrections[b][axis] for a, b in zip(w, p)) for axis in range(3)]
+                r = STILL
                 if decoder.bit(models[f"SIGNIFICANT[{state.density}][{bound_ratio}][{near}][{depth}]"][1]):
-                    r = self.read_residual(decoder, models, int(bound_ratio > 0), depth)
+                    m = [sum(a * residual_of.get(b, STILL)[axis] for a, b in zip(w, p)) for axis in range(3)]
+                    r = self.read_residual(decoder, models, f"COMPONENT[{int(bound_ratio > 0)}][{depth}]", m, s, step(bound))
                 for axis in range(3):
                     i = 3 * v + axis
-                    predicted = lim(expected[i] + round_shift(sum(a * corrections[b][axis] for a, b in zip(w, p)), 15))
-                    u[i] = lim(predicted + r[axis] * step(bound))
-                coded[v] = int(any(r))
+                    u[i] = lim(lim(expected[i] + round_shift(s[axis], 15)) + r[axis] * step(bound))
+                coded[v], residual_of[v] = int(any(r)), r
             else:
                 coded[v] = int(known.correction.get(v, STILL) != STILL)
             corrections[v] = tuple(u[3 * v + axis] - expected[3 * v + axis] for axis in range(3))
         return corrections, [v for v in coded if coded[v] and known.codes(v)]
 
     @staticmethod
-    def read_residual(decoder: RangeDecoder, models: Models, tight: int, depth: int) -> list[int]:
+    def read_residual(decoder: RangeDecoder, models: Models, component: str, m: list[int], s: list[int], size: int) -> tuple:
+        """`m` is what the residuals of the parents predict, `s` what their corrections do, both x 2^15; steps are of `size`."""
         r: list[int] = []
-        for _ in range(3):
+        for axis in range(3):
             before = klass(max((abs(c) for c in r), default=0))
-            r.append(decoder.signed(models[f"COMPONENT[{tight}][{depth}][{before}]"]))
-        return r
+            like, i, j = expected_sign(m[axis], s[axis], size)
+            sign = models[f"SIGN[{i}][{j + 2}]"][1] if like else None
+            if axis == 2 and before == 0:
+                r.append(decoder.nonzero_like(models[f"{component}[3][{level(m[axis], 1 << 15)}]"], sign, like))
+            else:
+                r.append(decoder.signed_like(models[f"{component}[{before}][{level(m[axis], 1 << 15)}]"], sign, like))
+        return tuple(r)
+
+
+def level(a: int, unit: int) -> int:
+    """How large a is."""
+    return 0 if 8 * abs(a) < unit else 1 if 2 * abs(a) < unit else 2 if abs(a) < 2 * unit else 3
+
+
+def expected_sign(m: int, s: int, size: int) -> tuple[int, int, int]:
+    """What the residuals of the parents say, else their corrections: -1, 1 or 0, and which model tells whether it is so."""
+    i, j = min(2, level(m, 1 << 15)), min(2, level(s, size << 15))
+    if i == 0 and j == 0:
+        return 0, 0, 0
+    like = (-1 if m < 0 else 1) if i > 0 else (-1 if s < 0 else 1)
+    return like, i, j if (s < 0) == (like < 0) else -j

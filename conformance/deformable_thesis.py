@@ -63,7 +63,7 @@ class ThesisCodec:
     def decode(self, payload: bytes, receiver: Receiver, number: int) -> tuple[ThesisState, int, list[int], RangeDecoder]:
         head = self.read_head(payload, receiver.span)
         base = receiver.baseline(number, head.key, head.baseline_delta)
-        tick = receiver.tick(number, base, head.key, head.tick_delta, "R-DEF-8")
+        tick = receiver.tick(number, base, head.tick_delta, "R-DEF-8")
         models = (base if self.item.models_kept else self.initial).models.copy()
         listed = self.read_list(RangeDecoder(head.list), models.list, head.count)
 

@@ -134,8 +134,8 @@ def make_case(vectors: Vectors, seed: int, number: int) -> tuple[bytes, Optional
 def last_tick(data: bytes) -> int:
     tick = 0
     try:
-        for tick, _ in File(data).packets():
-            pass
+        for packet in File(data).packets():
+            tick = packet.tick
     except StreamError:
         pass
     return tick

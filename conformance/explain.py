@@ -99,6 +99,9 @@ class Narrator(RangeDecoder):
     def signed_like(self, models, model, like):
         return self.whole("signed_like", models, super().signed_like, model, like)
 
+    def nonzero_like(self, models, model, like):
+        return self.whole("nonzero_like", models, super().nonzero_like, model, like)
+
     def whole(self, function, models, decode, *arguments):
         self.inside += 1
         value = decode(models, *arguments)
@@ -120,7 +123,7 @@ class Narrator(RangeDecoder):
 class Found:
     """What the packet at hand builds on."""
     base = None
-    number = delta = 0
+    delta = 0
     coefficients: list = []
 
 
@@ -133,7 +136,7 @@ def narrate():
     baseline = Receiver.baseline
 
     def find(receiver, number, key, baseline_delta):
-        Found.number, Found.delta = number, 0 if key else baseline_delta
+        Found.delta = 0 if key else baseline_delta
         Found.base = baseline(receiver, number, key, baseline_delta)
         return Found.base
 
@@ -216,9 +219,9 @@ def explain_vertices(packet, codec, state, base):
 
 
 def explain_thesis(packet, data, span):
-    rest = Cursor(data, 2, len(data))
-    rows = [f"| key | `{data[2:3].hex()}` | {rest.take(1, ('', ''))[0]} |"]
-    baseline = ["baseline_delta"] if not data[2] and span > 1 else []
+    rest = Cursor(data, 0, len(data))
+    rows = [f"| key | `{data[:1].hex()}` | {rest.take(1, ('', ''))[0]} |"]
+    baseline = ["baseline_delta"] if not data[0] and span > 1 else []
     for name in (*baseline, "tick_delta", "count", "list_bytes", "lowest", "range"):
         start = rest.position
         value = rest.varint(("", ""), ("", ""))
@@ -251,18 +254,18 @@ def explain_packet(packet, data, decoder, scene, every_bit):
 def explain(file, number, every_bit):
     narrate()
     decoders = SceneDecoder(file.declaration)
-    for count, (tick, record) in enumerate(file.packets()):
+    for count, (tick, own, record) in enumerate(file.packets()):
         Narrator.steps.clear()
         Narrator.symbols.clear()
         NAMES.clear()
         substream, data = decoders.split(record)
-        packet = decoders.substreams[substream].decode(data, tick)
+        packet = decoders.substreams[substream].decode(own, data, tick)
         if count == number:
             break
     else:
         sys.exit(f"there is no packet {number}")
     where = f" of substream {substream}" if len(decoders.substreams) > 1 else ""
-    print(f"Packet{where}: `{data.hex(' ')}`: sequence {packet.sequence}, payload `{data[2:].hex(' ')}`.\n")
+    print(f"Packet{where}: `{data.hex(' ')}`: number {packet.number}.\n")
     explain_packet(packet, data, decoders.substreams[substream], file.declaration, every_bit)
     print(f"State hash: {decoders.substreams[substream].state_hash():016x}.")
 
@@ -273,21 +276,22 @@ def play(file, lost):
     narrate()
     decoders = SceneDecoder(file.declaration)
     rows = []
-    for count, (tick, record) in enumerate(file.packets()):
+    for count, (tick, number, record) in enumerate(file.packets()):
         substream, data = decoders.split(record)
-        decoder, sequence = decoders.substreams[substream], data[0] | data[1] << 8
+        decoder = decoders.substreams[substream]
         if count in lost:
-            rows.append(f"| {count} | {sequence} | | | lost | | |")
+            rows.append(f"| {count} | {number} | | lost | | |")
             continue
+        Found.delta = 0
         try:
-            packet = decoder.decode(data, tick)
-            builds_on = "initial state" if packet.key else f"{Found.number - Found.delta}"
+            packet = decoder.decode(number, data, tick)
+            builds_on = "initial state" if packet.key else f"{number - Found.delta}"
             result = f"tick {packet.tick}"
         except StreamError as error:
-            builds_on, result = f"{Found.number - Found.delta}", f"refused: {error.rule}"
+            builds_on, result = f"{number - Found.delta}" if Found.delta else "", f"refused: {error.rule}"
         kept = ", ".join(map(str, sorted(decoder.receiver.kept)))
-        rows.append(f"| {count} | {sequence} | {Found.number} | {builds_on} | {result} | {kept} | `{decoder.state_hash():016x}` |")
-    table("packet | sequence | number | baseline | result | kept numbers | state hash", rows)
+        rows.append(f"| {count} | {number} | {builds_on} | {result} | {kept} | `{decoder.state_hash():016x}` |")
+    table("packet | number | baseline | result | kept numbers | state hash", rows)
 
 
 # ---- The scene declaration ------------------------------------------------------------------------------------------

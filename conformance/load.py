@@ -28,16 +28,11 @@ class Loads(NamedTuple):
 
 class LoadPacket(NamedTuple):
     number: int
-    restarts: bool
     key: int
     loads: int                                              # objects named
     state: Loads
     range: int                                              # final state of the range decoder
     code: int
-
-    @property
-    def sequence(self) -> int:
-        return self.number % (1 << 16)
 
     @property
     def tick(self) -> int:
@@ -51,12 +46,12 @@ class LoadDecoder:
         self.scene = scene
         self.moving = len(scene.moving())
         initial = Loads(0, [[(0, 0, 0)] * (2 + scene.loads.users) for _ in range(self.moving)])
-        self.receiver = Receiver(initial, scene.baseline_span, limits.packet_size, scene.tick_rate)
+        self.receiver = Receiver(initial, scene.baseline_span, limits.packet_size)
 
-    def decode(self, data: bytes, record_tick: Optional[int] = None, now: Optional[int] = None) -> LoadPacket:
-        """Decodes one packet, of a record at `record_tick` or that arrives at `now`; an error leaves the decoder unchanged."""
-        number = self.receiver.open(data, now)
-        decoder, models = RangeDecoder(data[2:]), InitialModels()
+    def decode(self, number: int, data: bytes, record_tick: Optional[int] = None) -> LoadPacket:
+        """Decodes the packet of a number, in a file of a record at `record_tick`; an error leaves the decoder unchanged."""
+        self.receiver.open(number, data)
+        decoder, models = RangeDecoder(data), InitialModels()
         several = self.moving > 1
 
         key = decoder.bit(models["KEY"][1])
@@ -65,7 +60,7 @@ class LoadDecoder:
         tick_delta = decoder.magnitude(models["TICK"])
         count = decoder.magnitude(models["COUNT"]) if several else 1
         baseline = self.receiver.baseline(number, key, baseline_delta)
-        tick = self.receiver.tick(number, baseline, key, tick_delta, "R-LOD-1")
+        tick = self.receiver.tick(number, baseline, tick_delta, "R-LOD-1")
         require(1 <= count <= self.moving, "invalid", "R-LOD-2")
 
         state = Loads(tick, [list(vectors) for vectors in baseline.vectors])
@@ -76,8 +71,8 @@ class LoadDecoder:
             read_load(decoder, models, state.vectors[index])
         decoder.check_end()
         require(record_tick in (None, tick), "invalid", "R-FIL-7")
-        restarts = self.receiver.accept(number, key, state, now)
-        return LoadPacket(number, restarts, key, count, state, decoder.range, decoder.code)
+        self.receiver.accept(number, state)
+        return LoadPacket(number, key, count, state, decoder.range, decoder.code)
 
     def state_hash(self) -> int:
         state = self.receiver.current

@@ -26,15 +26,10 @@ class Playout:
         self.scene = scene
         self.moving = scene.moving()
         self.reach = min(round_div(300 * scene.tick_rate, 1000), scene.max_extrapolation)
-        self.reset()
-
-    def reset(self) -> None:
-        self.updates = [[KnownUpdate(0, 0, item.initial)] for item in self.scene.objects]
+        self.updates = [[KnownUpdate(0, 0, item.initial)] for item in scene.objects]
         self.heard: set[int] = set()
 
     def apply(self, packet: Packet, now: int) -> None:
-        if packet.restarts:
-            self.reset()
         self.heard.add(packet.number)
         newest = max(self.heard)
         self.heard = {number for number in self.heard if number > newest - HEARD}

@@ -79,12 +79,15 @@ class RangeDecoder:
 
     def signed_like(self, models: list, model: list[int], like: int) -> int:
         """A number that often has the sign of `like`."""
-        if like == 0:
-            return self.signed(models)
         m = self.magnitude(models)
-        if m == 0:
-            return 0
-        negative = bool(self.bit(model)) != (like < 0)
+        return 0 if m == 0 else self.with_sign(m, model, like)
+
+    def nonzero_like(self, models: list, model: list[int], like: int) -> int:
+        """The same of a number that is not 0."""
+        return self.with_sign(self.magnitude(models) + 1, model, like)
+
+    def with_sign(self, m: int, model: list[int], like: int) -> int:
+        negative = bool(self.raw(1)) if like == 0 else bool(self.bit(model)) != (like < 0)
         require(m < 1 << 31, "malformed", "R-RNG-4")
         return -m if negative else m
 

@@ -18,6 +18,7 @@
 #include <tactus/receiver.h>
 #include <tactus/rigid/device_path.h>
 #include <tactus/scene/elastic_syntax.h>
+#include <tactus/scene/scene_syntax.h>
 
 namespace tactus::conformance {
 namespace {
@@ -127,9 +128,10 @@ void write_elastic(const std::vector<DeformableObject>& deformables, std::ostrea
 }
 
 void write_header_line(const Scene& h, std::ostream& out) {
-  out << R"({"header":{"version":1,"profile":0,"tick_rate":)" << h.tick_rate << R"(,"grid":[)" << int{h.grid.position} << ','
-      << int{h.grid.velocity} << ',' << int{h.grid.rotation} << ',' << int{h.grid.angular_velocity} << R"(],"max_extrapolation":)"
-      << h.max_extrapolation << R"(,"baseline_span":)" << int{h.baseline_span} << R"(,"objects":[)";
+  out << R"({"header":{"version":)" << int{kFormatVersion} << R"(,"profile":0,"tick_rate":)" << h.tick_rate << R"(,"grid":[)"
+      << int{h.grid.position} << ',' << int{h.grid.velocity} << ',' << int{h.grid.rotation} << ',' << int{h.grid.angular_velocity}
+      << R"(],"max_extrapolation":)" << h.max_extrapolation << R"(,"baseline_span":)" << int{h.baseline_span}
+      << R"(,"objects":[)";
   const char* comma = "";
   for (const RigidObject& object : h.objects) {
     out << comma << R"({"name":)" << quoted(object.name) << R"(,"dof":)" << int{object.dof} << '}';
@@ -150,7 +152,7 @@ void write_header_line(const Scene& h, std::ostream& out) {
 }
 
 void write_packet(const DecodedPacket& packet, std::uint64_t state, std::ostream& out) {
-  out << R"("sequence":)" << packet.sequence << R"(,"key":)" << (packet.key ? "true" : "false") << R"(,"tick":)" << packet.tick;
+  out << R"("number":)" << packet.number << R"(,"key":)" << (packet.key ? "true" : "false") << R"(,"tick":)" << packet.tick;
   if (packet.substream == 0) {
     out << R"(,"updates":[)";
     const char* comma = "";
@@ -198,7 +200,7 @@ class Client {
   /// Decodes the packet of a record and writes its line.
   Result<void> decode(std::uint64_t number, const FilePacket& record, std::ostream& out) {
     if (looks_) look_until(record.tick);
-    TACTUS_TRY(const DecodedPacket packet, receiver_.push(record.bytes));
+    TACTUS_TRY(const DecodedPacket packet, receiver_.push(record.number, record.bytes));
     if (packet.tick != record.tick) return fail(Errc::invalid, "R-FIL-7");
     const std::uint32_t first = scene_->moving().empty() ? 0 : scene_->moving()[0];
     for (const RigidUpdate& update : packet.updates)

@@ -151,16 +151,11 @@ class Update(NamedTuple):
 
 class Packet(NamedTuple):
     number: int
-    restarts: bool
     key: int
     updates: list[Update]
     moment: Moment
     range: int                                              # final state of the range decoder
     code: int
-
-    @property
-    def sequence(self) -> int:
-        return self.number % (1 << 16)
 
     @property
     def tick(self) -> int:
@@ -174,12 +169,12 @@ class RigidDecoder:
         self.scene = scene
         self.moving = scene.moving()
         initial = Moment(0, [item.initial for item in scene.objects])
-        self.receiver = Receiver(initial, scene.baseline_span, limits.packet_size, scene.tick_rate)
+        self.receiver = Receiver(initial, scene.baseline_span, limits.packet_size)
 
-    def decode(self, data: bytes, record_tick: Optional[int] = None, now: Optional[int] = None) -> Packet:
-        """Decodes one packet, of a record at `record_tick` or that arrives at `now`; an error leaves the decoder unchanged."""
-        number = self.receiver.open(data, now)
-        decoder, models = RangeDecoder(data[2:]), Models("rigid-start-models.csv")
+    def decode(self, number: int, data: bytes, record_tick: Optional[int] = None) -> Packet:
+        """Decodes the packet of a number, in a file of a record at `record_tick`; an error leaves the decoder unchanged."""
+        self.receiver.open(number, data)
+        decoder, models = RangeDecoder(data), Models("rigid-start-models.csv")
         several = len(self.moving) > 1
 
         key = decoder.bit(models["KEY"][1])
@@ -188,7 +183,7 @@ class RigidDecoder:
         tick_delta = decoder.magnitude(models["TICK"])
         count = decoder.magnitude(models["COUNT"]) if several else 1
         baseline = self.receiver.baseline(number, key, baseline_delta)
-        tick = self.receiver.tick(number, baseline, key, tick_delta, "R-RIG-1")
+        tick = self.receiver.tick(number, baseline, tick_delta, "R-RIG-1")
         require(1 <= count <= len(self.moving), "invalid", "R-RIG-3")
 
         moment = Moment(tick, list(baseline.states))
@@ -200,8 +195,8 @@ class RigidDecoder:
             updates.append(self.read_update(decoder, models, moment, self.moving[index]))
         decoder.check_end()
         require(record_tick in (None, tick), "invalid", "R-FIL-7")
-        restarts = self.receiver.accept(number, key, moment, now)
-        return Packet(number, restarts, key, updates, moment, decoder.range, decoder.code)
+        self.receiver.accept(number, moment)
+        return Packet(number, key, updates, moment, decoder.range, decoder.code)
 
     def read_update(self, decoder: RangeDecoder, models: Models, moment: Moment, index: int) -> Update:
         """Replaces the baseline's state of an object in `moment` by its new state."""

@@ -28,6 +28,7 @@ class Limits(NamedTuple):
 
 
 MAGIC = b"\x89TCT"
+VERSION = 2                                                 # of the format
 SMALLEST_OBJECT = 32
 HAS_DEFORMABLES, HAS_LOADS, IS_SMOOTHED, HAS_MOTION, IS_DRIVEN, HAS_BODIES, HAS_INTEREST = (1 << bit for bit in range(7))   # of `flags`
 
@@ -115,6 +116,12 @@ class Declaration:
         """The moving objects M, as indices into `objects`."""
         return [i for i, item in enumerate(self.objects) if item.dof != 0]
 
+    def substreams(self) -> list[int]:
+        """Their numbers (25, section 1)."""
+        count = len(self.deformables)
+        rigid = [0] if self.moving() or count == 0 else []
+        return [*rigid, *range(1, count + 1), *([count + 1] if self.loads else [])]
+
     def follows_devices(self) -> bool:
         """Whether both ends know the paths of devices (65, section 4)."""
         return bool(self.driven) or any(item.body for item in self.deformables)
@@ -130,7 +137,7 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(data[:4] == MAGIC, "malformed", "R-STR-1")
     require(len(data) >= 12, *STR_5)
     version, profile, flags, body_size = struct.unpack_from("<BBHI", data, 4)
-    require(version == 1, "unsupported", "R-STR-2")
+    require(version == VERSION, "unsupported", "R-STR-2")
     require(profile <= 1, "malformed", "R-STR-3")
     require(profile == 0, "unsupported", "R-STR-3")
     require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_SMOOTHED + HAS_MOTION + IS_DRIVEN + HAS_BODIES + HAS_INTEREST, "malformed", "R-STR-4")

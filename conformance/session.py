@@ -13,7 +13,6 @@ from datagram import (UP, DOWN, HANDSHAKE, PARTS, PACKET, JOIN, WELCOME, REFUSAL
 from decoder import SceneDecoder
 from deformable_decoder import DeformableDecoder
 from device_path import DevicePath, device_scene
-from packet import Receiver
 from rigid import RigidDecoder
 from scene import THESIS, Declaration, read_declaration
 
@@ -27,30 +26,6 @@ REMEMBERED = 1024                                           # own numbers
 MS = 1000                                                   # us
 MOST_SILENCE, MOST_JOINING, FIRST_ANSWER = 120_000 * MS, 10_000 * MS, 250 * MS
 STATE_LIMIT, HEADER_LIMIT = 1 << 28, 1 << 20                # bytes
-
-
-# ---- 25, section 9: packets with given numbers ----------------------------------------------------------------------
-class NumberedReceiver(Receiver):
-    given = 0
-
-    def open(self, data: bytes, now: Optional[int] = None) -> int:
-        require(len(data) - 2 <= self.largest_packet, "limit_exceeded", "R-PKT-1")
-        if not self.kept:
-            self.newest = self.given - 1
-        held = bool(self.kept) and self.given > min(self.kept) and self.given not in self.kept
-        require(self.given > self.newest or held, "state", "R-PKT-5")
-        return self.given
-
-    def baseline(self, number: int, key: int, baseline_delta: int):
-        require(1 <= baseline_delta <= (4095 if self.span > 1 else 1), "invalid", "R-PKT-3")
-        require(key or number - baseline_delta in self.kept, "state", "R-PKT-4")
-        return self.initial if key else self.kept[number - baseline_delta]
-
-
-def decode_numbered(decoder, number: int, packet: bytes):
-    decoder.receiver.__class__ = NumberedReceiver
-    decoder.receiver.given = number
-    return decoder.decode(b"\0\0" + packet)                 # in place of the sequence
 
 
 def trunc(a: int, b: int) -> int:
@@ -180,7 +155,7 @@ class Epoch:
         self.own = RigidDecoder(self.path.scene)
 
     def keep_device(self, number: int, packet: bytes) -> None:
-        self.path.add(number, decode_numbered(self.own, number, packet).moment.states[0])
+        self.path.add(number, self.own.decode(number, packet).moment.states[0])
 
     def take_received(self, kind: int, elements: tuple) -> None:
         """What comes up only."""
@@ -238,7 +213,7 @@ class Epoch:
             decoder = self.decoders.substreams[substream]
             if number in decoder.receiver.kept:
                 return True                                 # it came before
-            decoded = decode_numbered(decoder, number, payload)
+            decoded = decoder.decode(number, payload)
         except StreamError as error:
             return self.hold(now, number, packet, error)
         self.packets += 1
@@ -257,7 +232,7 @@ class Epoch:
         decoder = self.decoders.substreams[self.decoders.split(packet)[0]]
         if not isinstance(decoder, RigidDecoder):
             return False
-        if decoder.receiver.kept and number <= decoder.receiver.newest:
+        if number <= decoder.receiver.newest:
             return True                                     # no use any more
         self.held = {n: of for n, of in self.held.items() if now <= of[0] + LONGEST_HELD}
         if number in self.held:

@@ -34,7 +34,8 @@ LARGEST = 65536                                             # bytes of an input
 FLAGS = {
     "order": "breaks two rules; the one that is read first counts",
     "key": "a key packet after the first packet of a substream",
-    "loss": "packets are missing, reordered or come twice: sequence numbers do not follow each other",
+    "loss": "packets are missing, reordered or come twice: their numbers do not follow each other",
+    "numbered": "packet records have numbers (type 4)",
     "baselines": "baseline_span is greater than 1",
     "substreams": "packets begin with a substream byte",
     "bounds": "the scene declaration has a bounds record",

@@ -114,7 +114,7 @@ class Scene:
     def __init__(self, file):
         require(file.data[:4] == b"\x89TCT", "R-STR-1")
         version, profile, flags, body_size = file.numbers("4xBBHI")
-        require(version == 1, "R-STR-2")
+        require(version == 2, "R-STR-2")
         require(profile == 0, "R-STR-3")
         require(flags <= 127, "R-STR-4")
         body = Bytes(file.take(body_size), "R-STR-5")
@@ -195,27 +195,23 @@ def update(scene, base, t, reason, level, smoothed, r):        # 40, 5
 
 class Decoder:
     """Turns packets into states (25, 5; 40, 2). Substream 0 is the only one of a scene without deformable objects."""
-    def __init__(self, scene): self.scene, self.tick, self.states, self.newest, self.kept = scene, 0, scene.initial, 0, {}
+    def __init__(self, scene): self.scene, self.tick, self.states, self.newest, self.kept = scene, 0, scene.initial, None, {}
 
-    def decode(self, packet):
+    def decode(self, number, packet):
         """Returns which objects were updated."""
         scene, moving, several = self.scene, self.scene.moving, len(self.scene.moving) > 1
-        sequence, = Bytes(packet, "R-PKT-2").numbers("H")
-        behind = (self.newest - sequence) % 65536
-        reordered = bool(self.kept) and behind <= 127
-        number = self.newest - behind if reordered else self.newest + 1 + (sequence - self.newest - 1) % 65536
+        reordered = self.newest is not None and number <= self.newest
         require(not reordered or (number > min(self.kept) and number not in self.kept), "R-PKT-5")
-        payload = Payload(packet[2:])
+        payload = Payload(packet)
         key = payload.bit("KEY[1]")
         baseline_delta = payload.magnitude("BASELINE") if not key and scene.baseline_span > 1 else 1
         tick_delta = payload.magnitude("TICK")
         count = payload.magnitude("COUNT") if several else 1
-        require(1 <= baseline_delta <= scene.baseline_span, "R-PKT-3")
-        require(key or not self.kept or number - self.newest <= 32767, "R-PKT-7")
+        require(1 <= baseline_delta <= (4095 if scene.baseline_span > 1 else 1), "R-PKT-3")
         require(key or number - baseline_delta in self.kept, "R-PKT-4")
         base_tick, states = (0, scene.initial) if key else self.kept[number - baseline_delta]
         tick, states, named, i = base_tick + tick_delta, list(states), [], -1
-        require(tick < END_OF_TICKS and (tick <= self.tick if reordered else key or tick >= self.tick), "R-RIG-1")
+        require(tick < END_OF_TICKS and (tick <= self.tick if reordered else tick >= self.tick), "R-RIG-1")
         require(1 <= count <= len(moving), "R-RIG-3")
         for _ in range(count):
             i += 1 + (payload.magnitude("GAP") if several else 0)
@@ -229,8 +225,6 @@ class Decoder:
             named.append(moving[i])
         require(len(payload.data) <= payload.position, "R-RNG-2")
         require(payload.data[-1:] != b"\0", "R-RNG-3")
-        restarts = not reordered and key and (number - self.newest > 32767 or tick < self.tick)
-        self.kept = {} if restarts else self.kept
         self.kept[number] = (tick, states)
         if len(self.kept) > scene.baseline_span: del self.kept[min(self.kept)]
         if not reordered: self.tick, self.states, self.newest = tick, states, number
@@ -239,19 +233,23 @@ class Decoder:
 # ---- File (80) ------------------------------------------------------------------------------------------------------
 def updates(data):
     """Yields for each packet of a file the decoder, whose states are those after it, and the objects that were updated."""
-    file, tick = Bytes(data, "R-STR-5"), 0
+    file, tick, number, packets = Bytes(data, "R-STR-5"), 0, 0, None
     decoder = Decoder(Scene(file))
     file.rule = "R-FIL-2"
     while file.at < len(data):
         start, kind, size = file.at, file.take(1)[0], file.varint("R-FIL-6")
-        require(kind in (1, 2, 3) or kind >= 128, "R-FIL-3")
+        require(kind in (1, 2, 3, 4) or kind >= 128, "R-FIL-3")
+        if kind in (1, 4):                                  # packets, counted or with their numbers
+            require(packets in (None, kind), "R-FIL-9")
+            packets = kind
         require(kind != 3 or size == 8, "R-FIL-6")
         record = Bytes(file.take(size), "R-FIL-6")
         require((zlib.crc32(data[start:file.at]),) == file.numbers("I"), "R-FIL-5")
-        if kind == 1:
+        if kind == packets:
             tick += record.varint("R-FIL-6")
-            require(tick < END_OF_TICKS, "R-FIL-6")
-            named = decoder.decode(record.data[record.at:])
+            number = record.varint("R-FIL-6") if kind == 4 else number + 1
+            require(tick < END_OF_TICKS and 1 <= number < 1 << 62, "R-FIL-6")
+            named = decoder.decode(number, record.data[record.at:])
             require(decoder.tick == tick, "R-FIL-7")
             yield decoder, named
         require(kind != 3 or file.at == len(data), "R-FIL-8")

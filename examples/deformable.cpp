@@ -59,7 +59,7 @@ int main() {
     if (!sent) return std::printf("%s\n", describe(sent.error())), 1;
     for (const tactus::Packet& packet : *sent) {
       bytes += packet.bytes.size();
-      if (!receiver->push(packet.bytes)) return 1;
+      if (!receiver->push(packet.number, packet.bytes)) return 1;
     }
     const auto shown = receiver->displacements(0, tick);
     for (std::size_t v = 0; v < shown.size(); v += 3) {

@@ -72,7 +72,7 @@ int main() {
     }
     for (const tactus::Packet& packet : *sent) {
       ++packets, bytes += packet.bytes.size();
-      if (!receiver->push(packet.bytes)) return 1;
+      if (!receiver->push(packet.number, packet.bytes)) return 1;
     }
     for (std::size_t i = 0; i < kSlots; ++i)
       if (tactus::is_finite(truth[i].pose.position)) wanted[i] = truth[i];

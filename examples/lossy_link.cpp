@@ -18,13 +18,14 @@ constexpr int kPlayout = 50;  // [ticks] between truth and shown state
 
 struct InFlight {
   int arrives = 0;
+  std::uint64_t number = 0;  // sent along with the packet, which does not hold it
   std::vector<std::uint8_t> bytes;
 };
 
 struct Acknowledgement {
   int arrives = 0;
   std::size_t substream = 0;
-  std::uint16_t sequence = 0;
+  std::uint64_t number = 0;
 };
 
 tactus::RigidSample pendulum(int tick) {
@@ -50,19 +51,19 @@ int main() {
   int sent = 0, lost = 0, refused = 0, over = 0;
   for (int tick = 0; tick < 10000; ++tick) {
     for (; !back.empty() && back.front().arrives <= tick; back.pop_front())
-      sender->acknowledge(back.front().substream, back.front().sequence);
+      sender->acknowledge(back.front().substream, back.front().number);
     const tactus::RigidSample truth = pendulum(tick);
     const auto packets = sender->encode(tick, {.objects = {&truth, 1}});
     if (!packets) return 1;
     for (const tactus::Packet& packet : *packets) {
       ++sent;
       if (random() % 10 == 0) ++lost;
-      else link.push_back({tick + kDelay, {packet.bytes.begin(), packet.bytes.end()}});
+      else link.push_back({tick + kDelay, packet.number, {packet.bytes.begin(), packet.bytes.end()}});
     }
     for (; !link.empty() && link.front().arrives <= tick; link.pop_front()) {
-      const auto decoded = receiver->push(link.front().bytes, tick);
+      const auto decoded = receiver->push(link.front().number, link.front().bytes, tick);
       if (decoded) {
-        back.push_back({tick + kDelay, decoded->substream, decoded->sequence});
+        back.push_back({tick + kDelay, decoded->substream, decoded->number});
       } else {
         ++refused;
         if (tactus::advice(decoded.error()) == tactus::Advice::request_key) sender->request_key();

@@ -20,7 +20,7 @@ int main() {
     if (!packets) return 1;
     for (const tactus::Packet& packet : *packets) {
       std::printf("tick %4d: %zu bytes, reason %d\n", tick, packet.bytes.size(), static_cast<int>(packet.reason));
-      if (!receiver->push(packet.bytes)) return 1;
+      if (!receiver->push(packet.number, packet.bytes)) return 1;
     }
     const tactus::Pose shown = receiver->pose(1, tick);
     worst = std::max(worst, tactus::norm(shown.position - truth[1].pose.position));

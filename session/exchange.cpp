@@ -126,7 +126,7 @@ Result<void> Exchange::acknowledged(const Acknowledgement& ack, Reading& reading
     const bool waits = slot.fragment.number != 0 &&
                        !sent_fragments_.arrived(slot.fragment.number, slot.packets[0].substream, slot.fragment.index);
     for (std::size_t i = 0; i < slot.count && !waits; ++i)
-      sender->acknowledge(slot.packets[i].substream, slot.packets[i].sequence);
+      sender->acknowledge(slot.packets[i].substream, number - slot.packets[i].back);
   };
   const auto lost = [&](std::uint64_t number) {
     ++traffic_.lost;
@@ -159,7 +159,7 @@ void Exchange::update_pacer(const Acknowledgement& ack, std::uint64_t now) noexc
 
 /// A packet of this datagram, or one that it completed.   in   number  0: of no datagram
 bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet, Reading& reading) noexcept {
-  const auto decoded = receiver && number > 0 ? receiver->push_numbered(number, packet) : tl::unexpected(Error{});
+  const auto decoded = receiver && number > 0 ? receiver->push(number, packet) : tl::unexpected(Error{});
   if (!decoded) {
     if (receiver && number > 0 && receiver->holds(number, packet)) return true;  // it came before
     if (hold(number, packet, decoded.error(), reading.now)) return true;
@@ -216,7 +216,7 @@ bool Exchange::hold(std::uint64_t number, std::span<const std::uint8_t> packet, 
 void Exchange::take_held(Reading& reading) noexcept {
   held_->remove_if([&](const HeldPackets::Held& held) {
     if (held.number <= newest_rigid_) return true;  // older than a key packet
-    const auto decoded = receiver->push_numbered(held.number, held_->bytes(held));
+    const auto decoded = receiver->push(held.number, held_->bytes(held));
     if (!decoded) {
       const bool waits = decoded.error().code == Errc::state;
       if (!waits) ++traffic_.packets_refused;
@@ -286,14 +286,13 @@ std::optional<std::uint64_t> Exchange::due() const noexcept {
   return out;
 }
 
-/// Of packets that nobody took, the numbers are lost: the next ones must have others.
-void Exchange::give_up(std::uint64_t now) noexcept {
+/// Packets that nobody took are lost, and so are their numbers: submit() skips them.
+void Exchange::give_up() noexcept {
   for (; has_packets(); ++next_packet_) {
     const Packet& packet = packets_[next_packet_];
     ++traffic_.packets_held;
     wants_key_ = wants_key_ || packet.layer != Layer::all;
     wants_chain_ = wants_chain_ || (repairs_ && packet.substream == 0);
-    while (sent_.next() && *sent_.next() <= packet.number) skip_number(now);
   }
   packets_ = {};
   next_packet_ = next_fragment_ = 0;
@@ -322,7 +321,8 @@ std::uint64_t Exchange::next_send(std::uint64_t wanted) const noexcept {
 }
 
 Result<std::span<const Packet>> Exchange::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {
-  give_up(now);
+  give_up();
+  while (sent_.next() && *sent_.next() <= newest_packet_) skip_number(now);  // a packet had it that went when there was none left
   const auto number = sent_.next();
   if (!sender || !number) return packets_;
   if (!may_send(now)) {
@@ -335,7 +335,8 @@ Result<std::span<const Packet>> Exchange::submit(std::uint64_t now, std::int64_t
     key_wanted_at_ = now;
   }
   begin_chain(now);
-  TACTUS_TRY(packets_, sender->encode_numbered(*number, tick, truth));
+  TACTUS_TRY(packets_, sender->encode(tick, truth, *number));
+  for (const Packet& packet : packets_) newest_packet_ = std::max(newest_packet_, packet.number);
   if (path && direction_ == Direction::up && !packets_.empty()) path->add(packets_[0].number, sender->object(0));
   return packets_;
 }
@@ -457,7 +458,7 @@ bool Exchange::add_copies(std::uint64_t number, std::uint64_t now) noexcept {
     if (copy == nullptr || (copy->count > 1 && slot.count > 0) || !add_copy(*copy, number)) break;
     traffic_.payload_sent += copy->size;
     slot.kept[slot.count] = resends_->sent(*copy, number, now);
-    slot.packets[slot.count++] = {copy->substream, copy->sequence};
+    slot.packets[slot.count++] = {copy->substream, static_cast<std::uint16_t>(number - copy->number)};
     added = true;
   }
   return added;
@@ -489,7 +490,8 @@ bool Exchange::add_packets(std::uint64_t number, std::uint64_t now) noexcept {
     cut = packet.bytes.size() > kFragmentSize;
     if (cut ? added || !add_fragment(packet, number, now) : !add_whole(packet, number, now)) break;
     if (next_fragment_ == 0) ++traffic_.packets_sent;
-    slot.packets[slot.count++] = {static_cast<std::uint16_t>(packet.substream), packet.sequence};
+    slot.packets[slot.count++] = {static_cast<std::uint16_t>(packet.substream),
+                                  static_cast<std::uint16_t>(number - packet.number)};
     slot.layered = slot.layered || packet.layer != Layer::all;
     if (slot.layered) layered_ = number;
     added = true;

@@ -142,7 +142,8 @@ class Exchange {
     bool complete = true;  // all packets in it are decoded, or its fragment is kept
   };
   struct PacketName {
-    std::uint16_t substream = 0, sequence = 0;
+    std::uint16_t substream = 0;
+    std::uint16_t back = 0;  // the packet's number is so far below the datagram's; what is kept for copies never is older
   };
   struct FragmentName {
     std::uint64_t number = 0;  // of the packet; 0: no fragment
@@ -174,7 +175,7 @@ class Exchange {
 
   bool is_acknowledgement_due(std::uint64_t now) const noexcept { return received_.due() && *received_.due() <= now; }
   std::optional<std::uint64_t> begin(std::uint64_t now, bool wanted) noexcept;
-  void give_up(std::uint64_t now) noexcept;
+  void give_up() noexcept;
   void skip_number(std::uint64_t now) noexcept;
   bool misses_layers(std::uint64_t now) const noexcept;
   bool add_packets(std::uint64_t number, std::uint64_t now) noexcept;
@@ -210,6 +211,7 @@ class Exchange {
   std::optional<HeldPackets> held_;    // none: what lacks its baseline is refused
   std::vector<std::uint64_t> newest_;  // at a client: number of the newest packet of each substream
   std::uint64_t newest_rigid_ = 0;     // number of the newest packet of rigid objects that was decoded
+  std::uint64_t newest_packet_ = 0;    // highest number that a packet was given
   std::uint64_t rigid_heard_ = 0;      // the same, or that is held
   bool repairs_ = false, repaired_ = true, waits_ = false;
   bool fixed_playout_ = false;       // by its user: known before the first packet

@@ -169,7 +169,6 @@ std::uint16_t Resends::keep(std::uint64_t datagram, const Packet& packet, const 
                  .due = now,
                  .begin = end_,
                  .substream = static_cast<std::uint16_t>(packet.substream),
-                 .sequence = packet.sequence,
                  .index = static_cast<std::uint16_t>(portion.index),
                  .count = static_cast<std::uint16_t>(portion.count),
                  .size = static_cast<std::uint16_t>(size),

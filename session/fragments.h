@@ -180,14 +180,13 @@ class Resends {
     std::span<const std::uint8_t> bytes;
   };
   struct Kept {
-    std::array<std::uint64_t, 4> datagrams;  // that brought it, the newest first; 0: none
-    std::uint64_t number;                    // of the packet
-    std::uint64_t time, due;                 // [us] when it first went; when a copy may go
-    std::uint64_t begin;                     // of its bytes
-    std::uint16_t substream, sequence;
-    std::uint16_t index, count, size;  // index, count: as in Portion
-    std::uint8_t copies;               // that are to go
-    bool is_settled;                   // it has arrived, or nobody needs it any more
+    std::array<std::uint64_t, 4> datagrams;       // that brought it, the newest first; 0: none
+    std::uint64_t number;                         // of the packet
+    std::uint64_t time, due;                      // [us] when it first went; when a copy may go
+    std::uint64_t begin;                          // of its bytes
+    std::uint16_t substream, index, count, size;  // index, count: as in Portion
+    std::uint8_t copies;                          // that are to go
+    bool is_settled;                              // it has arrived, or nobody needs it any more
   };
   /// [us] from the first sending of a packet to the arrival of its copy, at most.
   struct Latest {

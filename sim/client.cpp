@@ -163,7 +163,7 @@ Result<std::unique_ptr<Client>> Client::create_remote(Server& server, std::size_
 }
 
 Result<void> Client::receive(std::span<const Packet> packets) noexcept {
-  for (const Packet& packet : packets) TACTUS_CHECK(receiver_->push(packet.bytes));
+  for (const Packet& packet : packets) TACTUS_CHECK(receiver_->push(packet.number, packet.bytes));
   return {};
 }
 

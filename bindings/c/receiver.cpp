@@ -65,12 +65,10 @@ tactus_packet_info info_of(const Scene& scene, const DecodedPacket& packet) noex
           .offset = 0,
           .substream = static_cast<std::uint32_t>(packet.substream),
           .kind = kind_of(scene, packet.substream),
-          .sequence = packet.sequence,
           .key = packet.key,
           .layer = static_cast<std::uint32_t>(packet.layer),
           .reason = static_cast<std::uint32_t>(reason),
-          .updates = static_cast<std::uint32_t>(packet.updates.size()) + packet.loads + packet.vertices,
-          .restarts = packet.restarts};
+          .updates = static_cast<std::uint32_t>(packet.updates.size()) + packet.loads + packet.vertices};
 }
 
 }  // namespace tactus::c
@@ -100,20 +98,20 @@ const tactus_scene* tactus_receiver_scene(const tactus_receiver* receiver) {
   return receiver_of(receiver) ? &receiver->scene : nullptr;
 }
 
-tactus_status tactus_receiver_push(tactus_receiver* receiver, const uint8_t* packet, size_t size, int64_t now,
+tactus_status tactus_receiver_push(tactus_receiver* receiver, uint64_t number, const uint8_t* packet, size_t size, int64_t now,
                                    tactus_packet_info* info, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     TACTUS_TRY(Receiver * to, receiver_of(receiver));
     if (!receiver->own) return refuse();  // a player or a session pushes to its own
     TACTUS_TRY(const auto bytes, span_of(packet, size));
     if (info != nullptr) TACTUS_CHECK(check_answer(info));
-    std::optional<std::int64_t> arrival;
-    if (now != TACTUS_NO_CLOCK) {
+    std::optional<std::int64_t> applied;
+    if (now != TACTUS_PACKET_TICK) {
       TACTUS_CHECK(check_tick(now));
-      arrival = now;
+      applied = now;
     }
     receiver->updates = {};
-    TACTUS_TRY(const DecodedPacket decoded, to->push(bytes, arrival));
+    TACTUS_TRY(const DecodedPacket decoded, to->push(number, bytes, applied));
     receiver->updates = decoded.updates;
     if (info == nullptr) return TACTUS_OK;
     tactus_packet_info out = info_of(*to->scene(), decoded);

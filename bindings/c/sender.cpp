@@ -27,7 +27,7 @@ static_assert(TACTUS_BASELINE_PREVIOUS == static_cast<int>(Baseline::previous) &
 constexpr tactus_sender_options kOptions{.size = sizeof(tactus_sender_options),
                                          .reduction = static_cast<std::int32_t>(RigidTriggers{}.reduction),
                                          .baseline = static_cast<std::int32_t>(SenderPolicy{}.baseline),
-                                         .first_sequence = SenderPolicy{}.first_sequence,
+                                         .reserved = 0,
                                          .key_interval = SenderPolicy{}.key_interval,
                                          .visual_fraction = 0,
                                          .haptic_fraction = 0,
@@ -47,7 +47,7 @@ tactus_sender_options defaults<tactus_sender_options>() noexcept {
 Result<SenderOptions> options_of(const tactus_sender_options* options) noexcept {
   TACTUS_TRY(const tactus_sender_options o, given_or(options, kOptions));
   if (o.reduction < TACTUS_REDUCTION_NONE || o.reduction > TACTUS_REDUCTION_DEAD_RECKONING ||
-      o.baseline < TACTUS_BASELINE_PREVIOUS || o.baseline > TACTUS_BASELINE_ACKNOWLEDGED || o.first_sequence > 0xffff)
+      o.baseline < TACTUS_BASELINE_PREVIOUS || o.baseline > TACTUS_BASELINE_ACKNOWLEDGED)
     return fail(Errc::invalid_argument, "R-API-4");
   SenderOptions out;
   TACTUS_TRY(out.triggers, bounds_of(o.rigid));
@@ -56,9 +56,7 @@ Result<SenderOptions> options_of(const tactus_sender_options* options) noexcept 
   out.deformable.visual_fraction = fraction_of(o.visual_fraction);
   out.deformable.haptic_fraction = fraction_of(o.haptic_fraction);
   TACTUS_TRY(out.load, bounds_of(o.load));
-  out.policy = {.key_interval = o.key_interval,
-                .first_sequence = static_cast<std::uint16_t>(o.first_sequence),
-                .baseline = static_cast<Baseline>(o.baseline)};
+  out.policy = {.key_interval = o.key_interval, .baseline = static_cast<Baseline>(o.baseline)};
   return out;
 }
 
@@ -102,10 +100,10 @@ tactus_status tactus_sender_request_key(tactus_sender* sender, tactus_error* err
   });
 }
 
-tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32_t substream, uint32_t sequence, tactus_error* error) {
+tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32_t substream, uint64_t number, tactus_error* error) {
   return call(error, [&]() -> Outcome {
-    if (sender == nullptr || substream >= substreams_of(*sender->sender.scene()) || sequence > 0xffff) return refuse();
-    sender->sender.acknowledge(substream, static_cast<std::uint16_t>(sequence));
+    if (sender == nullptr || substream >= substreams_of(*sender->sender.scene())) return refuse();
+    sender->sender.acknowledge(substream, number);
     return TACTUS_OK;
   });
 }

@@ -38,7 +38,7 @@ TACTUS_SIZED(tactus_rigid_bounds, TACTUS_UP_TO(tactus_rigid_bounds, force_floor)
 TACTUS_SIZED(tactus_deformable_bounds, TACTUS_UP_TO(tactus_deformable_bounds, reserved));
 TACTUS_SIZED(tactus_load_bounds, TACTUS_UP_TO(tactus_load_bounds, force_floor));
 TACTUS_SIZED(tactus_limits, TACTUS_UP_TO(tactus_limits, basis_work));
-TACTUS_SIZED(tactus_packet_info, TACTUS_UP_TO(tactus_packet_info, restarts));
+TACTUS_SIZED(tactus_packet_info, TACTUS_UP_TO(tactus_packet_info, updates));
 TACTUS_SIZED(tactus_scene_info, TACTUS_UP_TO(tactus_scene_info, load_users), TACTUS_UP_TO(tactus_scene_info, interest_reach));
 TACTUS_SIZED(tactus_rigid_info, TACTUS_UP_TO(tactus_rigid_info, initial));
 TACTUS_SIZED(tactus_deformable_info, TACTUS_UP_TO(tactus_deformable_info, has_stiffness));

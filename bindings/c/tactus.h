@@ -199,16 +199,14 @@ typedef struct tactus_packet_info {
   uint32_t size;
   uint32_t bytes; /* of the packet */
   int64_t tick;
-  uint64_t number;    /* in its substream, from 1 */
+  uint64_t number;    /* as the transport tells it: above 0, below 2^62; of a file: counted, or as the record says */
   uint64_t offset;    /* in the file; 0 elsewhere */
   uint32_t substream; /* 0: rigid objects; i + 1: deformable object i; the next: loads */
   uint32_t kind;      /* TACTUS_KIND_... */
-  uint32_t sequence;  /* the number as packets carry it, 16 bits */
   uint32_t key;       /* 1: builds on the initial state */
   uint32_t layer;     /* TACTUS_LAYER_..., deformable objects */
   uint32_t reason;    /* TACTUS_REASON_..., rigid objects: strongest among the updates */
   uint32_t updates;   /* objects named, or vertices with a residual of their own */
-  uint32_t restarts;  /* decoded: 1: of another or restarted sender, or after a long outage */
 } tactus_packet_info;
 
 enum { TACTUS_OUT_OF_INTEREST = 7 }; /* level of detail of an object that is not sent to a client */
@@ -312,16 +310,18 @@ typedef struct tactus_update {
   uint32_t level;  /* grid level */
 } tactus_update;
 
-#define TACTUS_NO_CLOCK INT64_MIN /* each packet counts as arriving in its own tick */
+#define TACTUS_PACKET_TICK INT64_MIN /* the replica applies a packet at the packet's own tick */
 
 TACTUS_API tactus_status tactus_receiver_create(const tactus_scene* scene, const tactus_receiver_options* options,
                                                 tactus_receiver** receiver, tactus_error* error);
 TACTUS_API void tactus_receiver_destroy(tactus_receiver* receiver); /* does nothing to a borrowed one */
 TACTUS_API const tactus_scene* tactus_receiver_scene(const tactus_receiver* receiver);
-/* Decode a packet.   in  now  [ticks] time of arrival on the receiver's clock, or TACTUS_NO_CLOCK;  info  may be NULL
-   err  its advice says how to react: R-PKT, R-RIG, R-DEF, R-RNG */
-TACTUS_API tactus_status tactus_receiver_push(tactus_receiver* receiver, const uint8_t* packet, size_t size, int64_t now,
-                                              tactus_packet_info* info, tactus_error* error);
+/* Decode a packet. Its number is not in its bytes: send both. A sender that restarts counts anew, so its packets go to a new receiver.
+   in   number  of the packet, as its sender gave it: above 0, below 2^62
+        now     the client's tick at which the replica applies it, or TACTUS_PACKET_TICK;  info  may be NULL
+   err  R-API-5 no such number; its advice says how to react: R-PKT, R-RIG, R-DEF, R-RNG */
+TACTUS_API tactus_status tactus_receiver_push(tactus_receiver* receiver, uint64_t number, const uint8_t* packet, size_t size,
+                                              int64_t now, tactus_packet_info* info, tactus_error* error);
 /* Objects that the packet decoded last named.   out  count  needed or written */
 TACTUS_API tactus_status tactus_receiver_updates(const tactus_receiver* receiver, tactus_update* out, size_t capacity,
                                                  size_t* count, tactus_error* error);

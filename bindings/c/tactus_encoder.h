@@ -140,9 +140,9 @@ enum { TACTUS_BASELINE_PREVIOUS = 0, TACTUS_BASELINE_ACKNOWLEDGED = 1 };
 
 typedef struct tactus_sender_options {
   uint32_t size;
-  int32_t reduction;                /* TACTUS_REDUCTION_...; dead reckoning */
-  int32_t baseline;                 /* TACTUS_BASELINE_...; previous */
-  uint32_t first_sequence;          /* 1 */
+  int32_t reduction; /* TACTUS_REDUCTION_...; dead reckoning */
+  int32_t baseline;  /* TACTUS_BASELINE_...; previous */
+  uint32_t reserved;
   double key_interval;              /* s; 5; 0: never */
   double visual_fraction;           /* deformable, main: a packet corrects errors over this fraction of v; 0: chosen */
   double haptic_fraction;           /* the same of h */
@@ -213,14 +213,15 @@ typedef struct tactus_held {
   const char* name; /* of the object, "" of a contact; UTF-8, lives as long as the scene */
 } tactus_held;
 
-/* A packet that was coded; fields as those of tactus_packet_info. */
+/* A packet that was coded; fields as those of tactus_packet_info. `number` is not in its bytes: the receiver needs both. */
 typedef struct tactus_packet {
   const uint8_t* data;
   uint32_t bytes;
   uint32_t substream;
   int64_t tick;
-  uint64_t number;
-  uint32_t kind, sequence, key, layer, reason, updates;
+  uint64_t number; /* packets of each substream count from 1 */
+  uint32_t kind, key, layer, reason, updates;
+  uint32_t reserved;
 } tactus_packet;
 
 /* What came of a truth. Arrays live until the next call of the object that made them. */
@@ -242,8 +243,8 @@ TACTUS_API tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tic
                                               tactus_encoded* encoded, tactus_error* error);
 /* A receiver asks for a key packet. */
 TACTUS_API tactus_status tactus_sender_request_key(tactus_sender* sender, tactus_error* error);
-/* A receiver has decoded a packet: TACTUS_BASELINE_ACKNOWLEDGED builds on it. */
-TACTUS_API tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32_t substream, uint32_t sequence,
+/* A receiver has decoded a packet: TACTUS_BASELINE_ACKNOWLEDGED builds on it. A number that no packet has is ignored. */
+TACTUS_API tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32_t substream, uint64_t number,
                                                    tactus_error* error);
 /* in   ack_timeout  [ticks] until a packet is acknowledged, 0: not known;  loss  fraction of packets */
 TACTUS_API tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t ack_timeout, double loss, tactus_error* error);
@@ -258,9 +259,10 @@ typedef struct tactus_writer tactus_writer;
 
 TACTUS_API tactus_status tactus_writer_create(const tactus_scene* scene, tactus_writer** writer, tactus_error* error);
 TACTUS_API void tactus_writer_destroy(tactus_writer* writer);
-/* in   tick  not falling;  key  as in tactus_packet_info */
-TACTUS_API tactus_status tactus_writer_add(tactus_writer* writer, int64_t tick, const uint8_t* packet, size_t size, uint32_t key,
-                                           tactus_error* error);
+/* in   tick  not falling;  number, key  as in tactus_packet. A file does not hold numbers: those of each substream are 1, 2, 3 ..
+   err  R-API-5 the tick falls, or the number is not the next one: nothing is written */
+TACTUS_API tactus_status tactus_writer_add(tactus_writer* writer, int64_t tick, uint64_t number, const uint8_t* packet,
+                                           size_t size, uint32_t key, tactus_error* error);
 /* Add the index and the end of the file. */
 TACTUS_API tactus_status tactus_writer_finish(tactus_writer* writer, tactus_error* error);
 /* Take what was written since the last call.   out  size  needed or taken */

@@ -102,11 +102,11 @@ void Answer::take(const Scene& scene, std::int64_t tick, std::span<const Packet>
                         .tick = tick,
                         .number = packet.number,
                         .kind = c::kind_of(scene, packet.substream),
-                        .sequence = packet.sequence,
                         .key = packet.key,
                         .layer = static_cast<std::uint32_t>(packet.layer),
                         .reason = static_cast<std::uint32_t>(packet.reason),
-                        .updates = packet.updates});
+                        .updates = packet.updates,
+                        .reserved = 0});
   for (const HeldPart& part : held) {
     const char* const name = name_of(scene, part).data();
     held_.push_back({.part = static_cast<std::uint32_t>(part.part),

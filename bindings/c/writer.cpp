@@ -67,12 +67,12 @@ tactus_status tactus_writer_create(const tactus_scene* scene, tactus_writer** wr
 
 void tactus_writer_destroy(tactus_writer* writer) { delete writer; }
 
-tactus_status tactus_writer_add(tactus_writer* writer, int64_t tick, const uint8_t* packet, size_t size, uint32_t key,
-                                tactus_error* error) {
+tactus_status tactus_writer_add(tactus_writer* writer, int64_t tick, uint64_t number, const uint8_t* packet, size_t size,
+                                uint32_t key, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     TACTUS_CHECK(check(writer));
     TACTUS_TRY(const auto bytes, span_of(packet, size));
-    TACTUS_CHECK(writer->file->add(tick, bytes, key != 0));
+    TACTUS_CHECK(writer->file->add(tick, number, bytes, key != 0));
     return TACTUS_OK;
   });
 }

@@ -33,17 +33,15 @@ export interface Options {
 
 export interface Packet {
   readonly tick: number;
-  readonly number: number;     // in its substream, from 1
+  readonly number: number;     // as push() was told; of a file: counted in its substream, or as the record says
   readonly bytes: number;      // of a file's packet, else 0
   readonly offset: number;     // in the file, else 0
   readonly substream: number;  // 0: rigid objects; i + 1: deformable object i; the next: loads
   readonly kind: "rigid" | "deformable" | "load";
-  readonly sequence: number;
   readonly key: boolean;       // builds on the initial state
   readonly layer: "haptic" | "visual" | "all";
   readonly reason: Reason;     // rigid objects: strongest among the updates
   readonly updates: number;    // objects named, or vertices with a residual of their own
-  readonly restarts: boolean;
 }
 
 export interface Pose {
@@ -102,8 +100,10 @@ export class Scene {
 export class Receiver {
   private constructor();
   readonly scene: Scene;
-  /** in  now  ticks on the receiver's own clock; left out: the packet arrives in its own tick */
-  push(packet: Uint8Array, now?: number | null): Packet;
+  /** Decode a packet. Its number is not in its bytes: send both. A sender that restarts counts anew, so its packets go to a new receiver.
+      in  number  as the sender gave it: above 0, at most Number.MAX_SAFE_INTEGER
+          now     the client's tick at which the replica applies it; left out: the packet's own */
+  push(number: number, packet: Uint8Array, now?: number | null): Packet;
   /** Objects that the packet decoded last named. */
   updates(): {object: number; reason: Reason; level: number}[];
   /** Poses of all rigid objects as shown at a tick: x y z (m), w x y z of each. */

@@ -40,6 +40,10 @@ function checkBytes(bytes) {
   if (!ArrayBuffer.isView(bytes) || bytes.BYTES_PER_ELEMENT !== 1) throw new TypeError("tactus: give bytes as a Uint8Array");
 }
 
+function checkNumber(number) {
+  if (!Number.isSafeInteger(number)) throw new TypeError("tactus: a packet's number is a whole number, and comes before its bytes");
+}
+
 class Tactus {
   constructor(exports) {
     this.exports = exports;
@@ -115,10 +119,10 @@ function withOptions(tactus, {interpolation = "none", limits = undefined}, body)
 }
 
 function packetOf(info) {
-  const {tick, number, bytes, offset, substream, kind, sequence, key, layer, reason, updates, restarts} = info;
+  const {tick, number, bytes, offset, substream, kind, key, layer, reason, updates} = info;
   return {
-    tick: Number(tick), number: Number(number), bytes, offset: Number(offset), substream, kind: kinds[kind], sequence, key: key !== 0,
-    layer: layers[layer], reason: reasons[reason], updates, restarts: restarts !== 0,
+    tick: Number(tick), number: Number(number), bytes, offset: Number(offset), substream, kind: kinds[kind], key: key !== 0,
+    layer: layers[layer], reason: reasons[reason], updates,
   };
 }
 
@@ -224,14 +228,15 @@ export class Receiver {
     this.scene = new Scene(tactus, tactus.exports.tactus_receiver_scene(handle));
   }
 
-  push(packet, now = null) {
+  push(number, packet, now = null) {
+    checkNumber(number);
     checkBytes(packet);
     const {memory} = this.#tactus;
-    const arrival = now === null ? -(2n ** 63n) : BigInt(now);  // TACTUS_NO_CLOCK
+    const applied = now === null ? -(2n ** 63n) : BigInt(now);  // TACTUS_PACKET_TICK
     return memory.with(packet.length, (at) => {
       memory.bytes(at, packet.length).set(packet);
       return packetOf(this.#tactus.memory.withAnswer("tactus_packet_info", (info) => {
-        this.#tactus.call("tactus_receiver_push", this.#handle, at, packet.length, arrival, info);
+        this.#tactus.call("tactus_receiver_push", this.#handle, BigInt(number), at, packet.length, applied, info);
         return memory.struct("tactus_packet_info", info);
       }));
     });

@@ -103,8 +103,8 @@ tl::expected<Session, Failure> start(const TraceInfo& info, const TraceFrame& fi
 }
 
 Result<void> send(Session& s, const Packet& packet, std::int64_t tick, Report& report) {
-  TACTUS_CHECK(s.writer.add(tick, packet.bytes, packet.key));
-  const auto decode = [&] { return s.receiver.push(packet.bytes); };
+  TACTUS_CHECK(s.writer.add(tick, packet.number, packet.bytes, packet.key));
+  const auto decode = [&] { return s.receiver.push(packet.number, packet.bytes); };
   if (s.figure) {
     const bool is_rigid = packet.substream == 0;
     const std::string line =

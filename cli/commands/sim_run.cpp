@@ -52,7 +52,7 @@ Outcome record_packets(SimRun& run, std::span<const Packet> packets, const SimOp
     else if (report.traffic) report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
     if (run.figure) run.figure->add_packet(run.simulation.frame().tick, packet.bytes.size());
     if (!run.stream) continue;
-    const auto added = run.stream->writer.add(run.simulation.frame().tick, packet.bytes, packet.key);
+    const auto added = run.stream->writer.add(run.simulation.frame().tick, packet.number, packet.bytes, packet.key);
     if (!added) return refuse(options.stream, added.error());
   }
   return {};

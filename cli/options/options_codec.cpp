@@ -269,7 +269,7 @@ void MeshArguments::add_encoder_to(Command& app) {
                       "Keep adapting the entropy models from packet to packet (--profile thesis) [off]"),
        app.add_switch(key("layered"), coding_.layered,
                       "Touched deformable objects: send the haptic layer in its own packet before the visual layer. Costs "
-                      "a second header per update; of the payload -14 to 45 % without and -22 to 117 % with a basis, 0 to 30 % "
+                      "a second header per update; of the payload -15 to 40 % without and -24 to 108 % with a basis, 0 to 27 % "
                       "with --profile "
                       "thesis, over five scenes [off]")});
 }

@@ -92,7 +92,7 @@ Json capture_json(const TraceCapture& capture) {
 }  // namespace
 
 Value packet_info_value(const PlayedPacket& played, const Scene& scene) {
-  Json out{{"tick", played.tick},   {"byte", played.offset}, {"sequence", played.sequence},
+  Json out{{"tick", played.tick},   {"byte", played.offset}, {"number", played.number},
            {"bytes", played.bytes}, {"key", played.key},     {"substream", played.substream}};
   if (!scene.deformables.empty() || scene.loads)
     out["content"] = played.substream == 0                         ? "rigid objects"

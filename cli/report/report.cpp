@@ -379,10 +379,10 @@ Json traffic_json(std::uint64_t packets, std::uint64_t keys, std::uint64_t updat
   };
   return {{"packets", packets}, {"packets_per_s", rate(packets, seconds)}, {"key_packets", keys},
           {"updates", updates}, {"updates_per_s", rate(updates, seconds)}, {"bytes", bytes},
-          {"payload", at(0)},   {"with_udp_ipv4", at(kUdpHeader)}};
+          {"payload", at(0)},   {"with_udp_ipv4", at(kNumberedDatagram)}};
 }
 
-constexpr std::array<std::pair<const char*, std::uint64_t>, 2> kSizes{{{"payload", 0}, {"with_udp_ipv4", kUdpHeader}}};
+constexpr std::array<std::pair<const char*, std::uint64_t>, 2> kSizes{{{"payload", 0}, {"with_udp_ipv4", kNumberedDatagram}}};
 
 const char* name_of(HapticRule rule) {
   constexpr std::array kNames{"off", "isotropic", "cone", "fixed", "perceptual"};

@@ -19,6 +19,8 @@ inline constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "vi
 inline constexpr std::array<const char*, 3> kLayers{"haptic", "visual", "all"};                    // index: Layer
 
 inline constexpr std::uint64_t kUdpHeader = 28;  // [bytes] IPv4 20, UDP 8
+inline constexpr std::uint64_t kNumberedDatagram =
+    kUdpHeader + 2;  // [bytes] and the packet's number, which the packet does not name
 
 std::string percent(double fraction);  ///< "4.2 %", "0 %"
 std::string significant(double value, int digits = 3);

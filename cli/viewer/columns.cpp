@@ -69,7 +69,7 @@ Result<PacketLog> PacketLog::create(const SharedScene& scene, const SenderOption
 Result<void> PacketLog::add(std::int64_t tick, const Truth& truth) {
   TACTUS_TRY(const auto packets, sender_.encode(tick, truth));
   for (const Packet& packet : packets) {
-    TACTUS_TRY(const DecodedPacket decoded, receiver_.push(packet.bytes));
+    TACTUS_TRY(const DecodedPacket decoded, receiver_.push(packet.number, packet.bytes));
     PlayedPacket placed;
     static_cast<DecodedPacket&>(placed) = decoded;
     placed.bytes = packet.bytes.size();

@@ -79,6 +79,7 @@ class PacketTable {
     Reason reason = Reason::request;
     for (const RigidUpdate& update : packet.updates) reason = std::max(reason, update.reason);
     ticks_.add(packet.tick);
+    numbers_.add(static_cast<std::int64_t>(packet.number));
     offsets_.add(static_cast<std::int64_t>(packet.offset));
     sizes_.add(static_cast<std::int64_t>(packet.bytes));
     substreams_.add(static_cast<std::int64_t>(packet.substream));
@@ -90,13 +91,13 @@ class PacketTable {
   std::int64_t last_tick() const noexcept { return last_; }
   /// The packets so far; it begins anew.
   nlohmann::ordered_json take() {
-    return {{"ticks", ticks_.take()},           {"offsets", offsets_.take()}, {"sizes", sizes_.take()},
-            {"substreams", substreams_.take()}, {"keys", keys_.take()},       {"reasons", reasons_.take()},
-            {"updates", updates_.take()}};
+    return {{"ticks", ticks_.take()},     {"numbers", numbers_.take()},       {"offsets", offsets_.take()},
+            {"sizes", sizes_.take()},     {"substreams", substreams_.take()}, {"keys", keys_.take()},
+            {"reasons", reasons_.take()}, {"updates", updates_.take()}};
   }
 
  private:
-  Column ticks_{1}, offsets_{1}, sizes_{1}, substreams_{1}, keys_{1}, reasons_{1}, updates_{1};
+  Column ticks_{1}, numbers_{1}, offsets_{1}, sizes_{1}, substreams_{1}, keys_{1}, reasons_{1}, updates_{1};
   std::int64_t last_ = 0;
 };
 

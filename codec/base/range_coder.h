@@ -28,6 +28,30 @@ struct BitModel {
   }
 };
 
+/// Start models in two bytes each: bit 15 says whether a model begins with rate `Rate` or 1.
+template <std::uint16_t Rate>
+class StartModel {
+ public:
+  consteval StartModel(unsigned zero, unsigned rate) : packed_(static_cast<std::uint16_t>(zero | (rate == 1 ? 0u : 0x8000u))) {
+    if (zero > 0x7fff || (rate != 1 && rate != Rate)) throw "not a start model";  // does not compile
+  }
+  constexpr BitModel model() const noexcept {
+    return {static_cast<std::uint16_t>(packed_ & 0x7fffu), static_cast<std::uint16_t>(packed_ >> 15 != 0 ? Rate : 1)};
+  }
+
+ private:
+  std::uint16_t packed_;
+};
+
+/// `Models` is a struct of nothing but BitModel.
+template <class Models, std::uint16_t Rate, std::size_t N>
+Models unpack(const StartModel<Rate> (&rows)[N]) noexcept {
+  static_assert(N * sizeof(BitModel) == sizeof(Models), "spec/tables/*-start-models.csv has one row per model");
+  std::array<BitModel, N> out;
+  for (std::size_t i = 0; i < N; ++i) out[i] = rows[i].model();
+  return std::bit_cast<Models>(out);
+}
+
 /// A symbol of `Bits` bits, most significant first, one model per node of the binary tree; node n has the children 2n and 2n + 1.
 template <unsigned Bits>
 using TreeModel = std::array<BitModel, (1u << Bits) - 1>;
@@ -78,17 +102,25 @@ class SymbolCoder {
 
   /// The same with a model of whether the sign is that of `like`, if there is one.
   std::int32_t signed_value(MagnitudeModel& model, BitModel& sign, std::int32_t like, std::int32_t value) noexcept {
-    if (like == 0) return signed_value(model, value);
     const std::uint32_t size = magnitude(model, magnitude_of(value));
-    if (size == 0) return 0;
-    const bool differs = self().bit(sign, (value < 0) != (like < 0) ? 1u : 0u);
-    return with_sign(size, differs != (like < 0));
+    return size == 0 ? 0 : with_sign(size, is_negative(sign, like, value));
+  }
+
+  /// The same of a value that is not 0: its magnitude less 1, then the sign.
+  std::int32_t nonzero_value(MagnitudeModel& model, BitModel& sign, std::int32_t like, std::int32_t value) noexcept {
+    const std::uint32_t less = magnitude(model, value == 0 ? 0 : magnitude_of(value) - 1);
+    return with_sign(less < 0x7fffffffu ? less + 1 : refuse(), is_negative(sign, like, value));
   }
 
   /// R-RNG-4: a magnitude had more than 32 bits, or a signed one more than 31. Never set while encoding.
   bool too_wide() const noexcept { return too_wide_; }
 
  private:
+  bool is_negative(BitModel& sign, std::int32_t like, std::int32_t value) noexcept {
+    if (like == 0) return self().raw(1, value < 0 ? 1u : 0u) != 0;
+    const bool differs = self().bit(sign, (value < 0) != (like < 0) ? 1u : 0u) != 0;
+    return differs != (like < 0);
+  }
   std::int32_t with_sign(std::uint32_t size, bool negative) noexcept {
     const auto bounded = static_cast<std::int32_t>(size <= 0x7fffffffu ? size : refuse());
     return negative ? -bounded : bounded;

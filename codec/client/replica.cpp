@@ -138,7 +138,8 @@ Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<
       tracks_(interpolation_ == Interpolation::playout ? 0 : scene.objects.size()),
       timelines_(interpolation_ == Interpolation::playout ? scene.objects.size() : 0),
       shapes_(std::move(shapes)) {
-  reset_timelines();
+  heard_.reset();
+  timelines_.reset(scene_);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     tracks_[i].path.object = static_cast<std::uint32_t>(i);
     tracks_[i].path.state = initial_state(scene, i);
@@ -154,13 +155,7 @@ std::int64_t Replica::interval(const Track& track) const noexcept {
   return std::clamp(wanted, shortest_, longest_);
 }
 
-void Replica::reset_timelines() noexcept {
-  heard_.reset();
-  timelines_.reset(scene_);
-}
-
 void Replica::add_to_timelines(const DecodedPacket& packet, const RigidStates& states) noexcept {
-  if (packet.restarts) reset_timelines();
   heard_.add(packet.number);
   for (const RigidUpdate& update : packet.updates) timelines_.add(update.object, packet.number, states.objects[update.object]);
 }

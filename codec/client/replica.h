@@ -163,7 +163,6 @@ class Replica {
   };
   static constexpr unsigned kMostSmoothed = 64;  // updates back
   void add_to_timelines(const DecodedPacket& packet, const RigidStates& states) noexcept;
-  void reset_timelines() noexcept;
   RigidPose path_from(std::uint32_t object, const Timelines::Update& a, std::int64_t tick) const noexcept;
   PoseOffset past_offset(std::uint32_t object, Timelines::Index update) const noexcept;
   RigidPose past_pose(std::uint32_t object, std::int64_t tick) const noexcept;

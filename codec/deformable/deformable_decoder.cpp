@@ -52,13 +52,8 @@ class Of final : public DeformableDecoder {
         stream_(scene, limits, std::move(initial), scene, object_, std::forward<More>(more)...),
         number_(index + 1) {}
 
-  Result<DecodedPacket> decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept override {
-    TACTUS_TRY(DecodedPacket decoded, stream_.decode(packet, now));
-    decoded.substream = number_;
-    return decoded;
-  }
-  Result<DecodedPacket> decode_numbered(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept override {
-    TACTUS_TRY(DecodedPacket decoded, stream_.decode_numbered(number, packet));
+  Result<DecodedPacket> decode(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept override {
+    TACTUS_TRY(DecodedPacket decoded, stream_.decode(number, packet));
     decoded.substream = number_;
     return decoded;
   }

@@ -83,9 +83,10 @@ class MainReader {
   std::uint32_t read_vertices(Coder& coder, MainModels& models, const MainHead& head, MainState& next) noexcept {
     std::uint32_t updates = 0;
     coder_.run(expected_, next.displacement,
-               [&](std::uint32_t, const VertexContext& context, const Vec3i&, std::uint32_t, std::int64_t) noexcept {
+               [&](std::uint32_t, const VertexContext& context, const auto& axes, const Vec3i&, std::int64_t) noexcept {
                  Vec3i residual{};
-                 if (!coder.too_wide()) code_vertex(coder, models, head.density, context, residual);
+                 if (coder.too_wide() || !code_significance(coder, models, head.density, context, false)) return residual;
+                 code_residual(coder, models, context, axes(), residual);
                  updates += is_zero(residual) ? 0u : 1u;
                  return residual;
                });
@@ -156,9 +157,7 @@ class DeformableDecoder {
   virtual ~DeformableDecoder() = default;
 
   /// in, err  Receiver::push
-  virtual Result<DecodedPacket> decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept = 0;
-  /// in, err  Receiver::push_numbered
-  virtual Result<DecodedPacket> decode_numbered(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept = 0;
+  virtual Result<DecodedPacket> decode(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept = 0;
   /// Newest decoded displacement of every vertex, x 2^-position_exp m.
   virtual std::span<const std::array<std::int32_t, 3>> displacements() const noexcept = 0;
   /// Predicted displacements at a tick; a tick before the newest packet counts as that packet's. Valid until the next call.

@@ -21,8 +21,9 @@ namespace {
 constexpr double kRounding = 0.8660254038;  // grid units: farthest that a vertex lies from its nearest grid point
 constexpr float kDeadZone = 0.7F;           // coefficients below this many steps are not sent
 
-/// Nearest residual, its components then moved towards zero while the limit allows: short symbols are cheap.
-Vec3i quantise(const Vec3i& truth, const Vec3i& predicted, std::uint32_t farthest, std::int64_t step) noexcept {
+/// Nearest residual. The components of a vertex that predicts no others are then moved towards zero while the limit allows: short symbols
+/// are cheap, but what others are predicted from had better be right.
+Vec3i quantise(const Vec3i& truth, const Vec3i& predicted, std::uint32_t farthest, std::int64_t step, bool predicts) noexcept {
   const std::int64_t limit = std::int64_t{farthest} * farthest;
   std::array<std::int64_t, 3> error{};
   std::int64_t sum = 0;
@@ -38,7 +39,7 @@ Vec3i quantise(const Vec3i& truth, const Vec3i& predicted, std::uint32_t farthes
     error[i] -= out[i] * step;
     sum += error[i] * error[i];
   }
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3 && !predicts; ++i) {
     if (out[i] == 0) continue;
     const std::int64_t sign = out[i] > 0 ? 1 : -1;
     const std::int64_t moved = error[i] + sign * step;
@@ -177,10 +178,11 @@ std::uint32_t MainEncoder::choose_residuals() noexcept {
   std::uint32_t updates = 0;
   coder_.run(
       expected_, next_.displacement,
-      [&](std::uint32_t v, const VertexContext& context, const Vec3i& predicted, std::uint32_t, std::int64_t step) noexcept {
-        const Vec3i residual = quantise(truth_[v], predicted, limit_[coder_.is_inside(v)], step);
-        coded_.push_back({context, residual});
-        updates += is_zero(residual) ? 0u : 1u;
+      [&](std::uint32_t v, const VertexContext& context, const auto& axes, const Vec3i& predicted, std::int64_t step) noexcept {
+        const Vec3i residual = quantise(truth_[v], predicted, limit_[coder_.is_inside(v)], step, context.depth > 0);
+        const bool any = !is_zero(residual);
+        coded_.push_back({context, any ? axes() : AxisContexts{}, residual});
+        updates += any ? 1u : 0u;
         return residual;
       });
   return updates;
@@ -192,7 +194,9 @@ std::size_t MainEncoder::write(MainHead head, const MainState& base, std::span<s
   code_main_start(coder, models, object_, baseline_span_, head);
   code_main_head(coder, models, object_, rings_, base, head);
   if (head.layer != Layer::haptic) code_coefficients(coder, models, coefficients_);
-  for (CodedVertex& c : coded_) code_vertex(coder, models, head.density, c.context, c.residual);
+  for (CodedVertex& c : coded_)
+    if (code_significance(coder, models, head.density, c.context, !is_zero(c.residual)))
+      code_residual(coder, models, c.context, c.axes, c.residual);
   return coder.finish();
 }
 
@@ -279,7 +283,7 @@ class Of final : public DeformableEncoder {
   void set_bound_scale(double factor) noexcept override { stream_.codec().set_bound_scale(factor); }
   void request_key() noexcept override { stream_.request_key(); }
   void forget_last() noexcept override { stream_.forget_last(); }
-  void acknowledge(std::uint16_t sequence) noexcept override { stream_.acknowledge(sequence); }
+  void acknowledge(std::uint64_t number) noexcept override { stream_.acknowledge(number); }
   std::uint64_t state_hash() const noexcept override { return tactus::state_hash(object_, stream_.newest()); }
 
  private:

@@ -56,6 +56,7 @@ class MainEncoder {
  private:
   struct CodedVertex {
     VertexContext context;
+    AxisContexts axes;
     Vec3i residual{};
   };
 
@@ -150,7 +151,7 @@ class DeformableEncoder {
   virtual void set_bound_scale(double factor) noexcept = 0;   ///< of all thresholds.   pre  factor >= 1
   virtual void request_key() noexcept = 0;
   virtual void forget_last() noexcept = 0;
-  virtual void acknowledge(std::uint16_t sequence) noexcept = 0;
+  virtual void acknowledge(std::uint64_t number) noexcept = 0;
   virtual std::uint64_t state_hash() const noexcept = 0;
 };
 

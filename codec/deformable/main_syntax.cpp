@@ -5,15 +5,14 @@ namespace tactus {
 
 namespace {
 
-constexpr BitModel kRows[] = {
+constexpr StartModel<5> kRows[] = {
 #include "deformable_start_models.inc"
 };
-static_assert(sizeof kRows == sizeof(MainModels), "spec/tables/deformable-start-models.csv has one row per model");
 
 }  // namespace
 
 const MainModels& main_start_models() noexcept {
-  static constexpr MainModels models = std::bit_cast<MainModels>(std::to_array(kRows));
+  static const MainModels models = unpack<MainModels>(kRows);
   return models;
 }
 

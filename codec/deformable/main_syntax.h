@@ -34,8 +34,10 @@ struct MainModels {
   std::array<BitModel, 2> driven, fades;                               // context: the baseline's packet did
   std::array<std::array<MagnitudeModel, 3>, 4> coefficient;            // by mode, size before
   std::array<std::array<std::array<std::array<BitModel, 3>, 3>, 4>, kDensities>
-      significant;                                                        // density, bound ratio, parents, depth
-  std::array<std::array<std::array<MagnitudeModel, 3>, 3>, 2> component;  // tight, depth, size before
+      significant;  // density, bound ratio, parents, depth
+  std::array<std::array<std::array<std::array<MagnitudeModel, 4>, 4>, 3>, 2>
+      component;                                // tight, depth, size before (3: z after two zeros), parents' size
+  std::array<std::array<BitModel, 5>, 3> sign;  // parents' residual, predicted correction + 2
 };
 
 /// Start probabilities, spec/tables/deformable-start-models.csv.
@@ -52,6 +54,33 @@ struct MainHead : PacketHead {
   std::uint32_t weight_set = 0;  ///< among those declared
   Following following = Following::none;
 };
+
+/// What the parents say of one component of a residual.
+struct AxisContext {
+  std::uint8_t size = 0;   ///< level() of their residuals
+  std::int8_t like = 0;    ///< sign that is expected, 0: none
+  std::uint8_t model = 0;  ///< of MainModels::sign, row-major
+};
+
+using AxisContexts = std::array<AxisContext, 3>;
+
+/// 0 to 3: below 1/8, 1/2, 2, or more of `unit`.
+constexpr std::uint8_t level_of(std::int64_t value, std::int64_t unit) noexcept {
+  const std::int64_t size = value < 0 ? -value : value;
+  return 8 * size < unit ? 0 : 2 * size < unit ? 1 : size < 2 * unit ? 2 : 3;
+}
+
+/// in   residual    sum of the parents' residuals, weighted, x 2^15
+///      correction  predicted, x 2^15 grid units;  step  of the quantiser, grid units
+constexpr AxisContext axis_context(std::int64_t residual, std::int64_t correction, std::int64_t step) noexcept {
+  const auto sign_of = [](std::int64_t value) noexcept { return value < 0 ? -1 : 1; };
+  const std::uint8_t size = level_of(residual, 1 << 15);
+  const int by_residual = std::min<int>(size, 2),
+            by_correction = std::min<int>(level_of(correction, step << 15), 2) * sign_of(correction);
+  if (by_residual == 0 && by_correction == 0) return {size, 0, 0};
+  const int like = by_residual != 0 ? sign_of(residual) : sign_of(correction);
+  return {size, static_cast<std::int8_t>(like), static_cast<std::uint8_t>(5 * by_residual + by_correction * like + 2)};
+}
 
 /// Which models a vertex's symbols use.
 struct VertexContext {
@@ -201,28 +230,34 @@ void code_coefficients(Coder& coder, MainModels& models, std::span<std::int32_t>
   }
 }
 
-/// A vertex's residual in quantiser steps; zero costs one flag.
+/// Whether a vertex has a residual that is not 0.
 template <class Coder>
-void code_vertex(Coder& coder, MainModels& models, std::uint32_t density, const VertexContext& context,
-                 Vec3i& residual) noexcept {
-  const bool any = !is_zero(residual);
-  if (!coder.bit(models.significant[density][context.bound_ratio][context.parents][context.depth], any ? 1u : 0u)) {
-    residual = {};
-    return;
-  }
+bool code_significance(Coder& coder, MainModels& models, std::uint32_t density, const VertexContext& context, bool any) noexcept {
+  return coder.bit(models.significant[density][context.bound_ratio][context.parents][context.depth], any ? 1u : 0u) != 0;
+}
+
+/// A residual that is not 0, in quantiser steps.
+template <class Coder>
+void code_residual(Coder& coder, MainModels& models, const VertexContext& context, const AxisContexts& axes,
+                   Vec3i& residual) noexcept {
   auto& component = models.component[context.bound_ratio == 0 ? 0 : 1][context.depth];
-  std::uint32_t largest = 0;
-  for (std::int32_t& c : residual) {
-    c = coder.signed_value(component[size_class(largest)], c);
-    largest = std::max(largest, magnitude_of(c));
-  }
+  auto& [x, y, z] = residual;
+  const auto& [of_x, of_y, of_z] = axes;
+  const auto sign = [&models](const AxisContext& axis) noexcept -> BitModel& {
+    return models.sign[axis.model / 5][axis.model % 5];
+  };
+  x = coder.signed_value(component[0][of_x.size], sign(of_x), of_x.like, x);
+  y = coder.signed_value(component[size_class(magnitude_of(x))][of_y.size], sign(of_y), of_y.like, y);
+  const std::size_t before = size_class(std::max(magnitude_of(x), magnitude_of(y)));
+  z = before == 0 ? coder.nonzero_value(component[3][of_z.size], sign(of_z), of_z.like, z)
+                  : coder.signed_value(component[before][of_z.size], sign(of_z), of_z.like, z);
 }
 
 /// Upper bound of the size of any packet, without its substream's number [bytes].
 constexpr std::size_t max_main_packet(std::size_t vertices, std::size_t modes) noexcept {
-  constexpr std::size_t kHead = 112;        // sequence, fields, bounds, weight set, tail
+  constexpr std::size_t kHead = 112;        // fields, bounds, weight set, tail
   constexpr std::size_t kCoefficient = 16;  // a signed value at 15 bits per adaptive bit
-  constexpr std::size_t kVertex = 40;       // a flag and three signed values
+  constexpr std::size_t kVertex = 44;       // a flag and three values with their signs
   return kHead + kCoefficient * modes + kVertex * vertices;
 }
 

@@ -69,7 +69,7 @@ constexpr std::int32_t restore_error(std::uint32_t symbol, const ThesisHead& hea
 
 /// Upper bound of the size of any packet, without its substream's number [bytes].
 constexpr std::size_t max_thesis_packet(std::size_t vertices, unsigned quant_bits) noexcept {
-  constexpr std::size_t kHead = 96;                   // sequence, fields, tails
+  constexpr std::size_t kHead = 96;                   // fields, tails
   return kHead + (17u + 6u * quant_bits) * vertices;  // a gap and three symbols at 15 bits per adaptive bit
 }
 

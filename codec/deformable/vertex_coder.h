@@ -18,7 +18,7 @@ class VertexCoder {
  public:
   /// pre  `hierarchy` outlives the pass
   VertexCoder(const VertexHierarchy& hierarchy, std::size_t vertices)
-      : hierarchy_(hierarchy), correction_(vertices), coded_(vertices), inside_(vertices) {
+      : hierarchy_(hierarchy), correction_(vertices), residual_(vertices), coded_(vertices), inside_(vertices) {
     area_.reserve(vertices);
   }
 
@@ -33,10 +33,9 @@ class VertexCoder {
     }
     for (const std::uint32_t v : area_) inside_[v] = 1;
     const std::uint32_t haptic = head.touched ? haptic_bound(head.haptic) : head.visual;
-    bound_[0] = head.visual;
-    bound_[1] = std::min(head.visual, haptic);
     bound_ratio_ = bound_ratio_of(haptic, head.visual);
-    for (std::size_t i = 0; i < 2; ++i) step_[i] = step_of(bound_[i]);
+    step_[0] = step_of(head.visual);
+    step_[1] = step_of(std::min(head.visual, haptic));
     codes_[0] = head.layer != Layer::haptic;
     codes_[1] = head.layer != Layer::visual;
     use_weights(head.weight_set);
@@ -87,6 +86,7 @@ class VertexCoder {
     for (const std::uint32_t v : area_) {
       for (std::size_t axis = 0; axis < 3; ++axis) expected[v][axis] -= base.haptic_correction[v][axis];
       coded_[v] = is_zero(base.haptic_correction[v]) ? 0 : 1;
+      residual_[v] = {};
     }
   }
   /// Store the haptic correction for the visual packet of the same tick.
@@ -109,7 +109,7 @@ class VertexCoder {
 
   /// in   expected  displacement by temporal prediction
   /// out  decoded   displacement; may not alias `expected`; of layered objects only of vertices that the packet codes
-  ///      residual(vertex, context, predicted, bound, step) returns the vertex's residual in steps
+  ///      residual(vertex, context, axes, predicted, step) returns the vertex's residual in steps; axes() is for those that are not 0
   template <class Residual>
   void run(std::span<const Vec3i> expected, std::span<Vec3i> decoded, Residual&& residual) noexcept {
     const ListOfLists<VertexParent>& parents_of = hierarchy_.parents[set_];
@@ -119,40 +119,56 @@ class VertexCoder {
         for (std::size_t axis = 0; axis < 3; ++axis) correction_[v][axis] = decoded[v][axis] - expected[v][axis];
         continue;
       }
+      const std::span<const VertexParent> parents = parents_of[i];
       std::array<std::int64_t, 3> sum{};
-      unsigned parents = 0;
-      for (const VertexParent& p : parents_of[i]) {
+      unsigned coded = 0;
+      for (const VertexParent& p : parents) {
         for (std::size_t axis = 0; axis < 3; ++axis)
           sum[axis] += static_cast<std::int64_t>(p.weight) * correction_[p.vertex][axis];
-        parents += coded_[p.vertex];
+        coded += coded_[p.vertex];
       }
       Vec3i predicted{};
       for (std::size_t axis = 0; axis < 3; ++axis)
         predicted[axis] = limited_displacement(expected[v][axis] + round_shift(sum[axis], 15));
       const std::size_t inside = inside_[v];
       const VertexContext context{static_cast<std::uint8_t>(inside ? bound_ratio_ : 0),
-                                  static_cast<std::uint8_t>(std::min(parents, 2u)),
-                                  std::min<std::uint8_t>(hierarchy_.depth[v], 2)};
-      const Vec3i r = residual(v, context, predicted, bound_[inside], step_[inside]);
+                                  static_cast<std::uint8_t>(std::min(coded, 2u)), std::min<std::uint8_t>(hierarchy_.depth[v], 2)};
+      const std::int64_t step = step_[inside];
+      const auto axes = [&]() noexcept { return axis_contexts(parents, sum, step); };
+      const Vec3i r = residual(v, context, axes, predicted, step);
       coded_[v] = is_zero(r) ? 0 : 1;
+      residual_[v] = r;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        decoded[v][axis] = limited_displacement(predicted[axis] + r[axis] * step_[inside]);
+        decoded[v][axis] = limited_displacement(predicted[axis] + r[axis] * step);
         correction_[v][axis] = decoded[v][axis] - expected[v][axis];
       }
     }
   }
 
  private:
+  AxisContexts axis_contexts(std::span<const VertexParent> parents, const std::array<std::int64_t, 3>& corrections,
+                             std::int64_t step) const noexcept {
+    std::array<std::int64_t, 3> residuals{};
+    for (const VertexParent& p : parents) {
+      if (coded_[p.vertex] == 0) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        residuals[axis] += static_cast<std::int64_t>(p.weight) * residual_[p.vertex][axis];
+    }
+    AxisContexts out;
+    for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = axis_context(residuals[axis], corrections[axis], step);
+    return out;
+  }
+
   static constexpr std::int32_t kMost = DeformableObject::kMaxDisplacement;
 
   const VertexHierarchy& hierarchy_;
   std::vector<Vec3i> correction_;     // decoded - expected
+  std::vector<Vec3i> residual_;       // [steps]
   std::vector<std::uint8_t> coded_;   // had a residual
   std::vector<std::uint8_t> inside_;  // in the area of interest
   std::vector<std::uint32_t> area_;
-  std::uint32_t bound_[2]{};  // outside, inside
-  std::int64_t step_[2]{1, 1};
-  bool codes_[2]{true, true};  // outside, inside
+  std::int64_t step_[2]{1, 1};  // outside, inside
+  bool codes_[2]{true, true};   // outside, inside
   std::uint8_t bound_ratio_ = 0;
   std::uint32_t set_ = 0;  // of weights
 };

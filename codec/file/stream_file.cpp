@@ -15,17 +15,32 @@ namespace {
 constexpr std::uint8_t kPacket = 1;
 constexpr std::uint8_t kIndex = 2;
 constexpr std::uint8_t kTrailer = 3;
+constexpr std::uint8_t kNumbered = 4;
 constexpr std::uint8_t kFirstExtension = 128;
 constexpr std::uint64_t kTrailerPayload = 8;                       // offset of the index
 constexpr std::size_t kTrailerSize = 1 + 1 + kTrailerPayload + 4;  // type, size, payload, check value
 constexpr std::size_t kRecordExtra = 1 + 10 + 4;                   // at most, around a payload: type, size, check value
 constexpr std::uint64_t kMostBeforePacket = 6;                     // tick_delta, number of the substream
+constexpr std::uint64_t kMostOfNumber = 9;
+
+constexpr bool is_packet(std::uint8_t type) noexcept { return type == kPacket || type == kNumbered; }
 
 }  // namespace
 
+PacketNumbers::PacketNumbers(const Scene& scene) : has_substream_number_(tactus::has_substream_number(scene)) {
+  newest_.resize(has_substream_number_ ? 256 : 1);
+}
+
+std::uint64_t* PacketNumbers::of(std::span<const std::uint8_t> packet) noexcept {
+  if (!has_substream_number_) return newest_.data();
+  return packet.empty() ? nullptr : &newest_[packet[0]];
+}
+
+void PacketNumbers::reset() noexcept { newest_.assign(newest_.size(), 0); }
+
 Result<StreamFileWriter> StreamFileWriter::create(std::ostream& out, const Scene& scene) try {
   TACTUS_TRY(const auto bytes, write_scene(scene));
-  StreamFileWriter writer(out);
+  StreamFileWriter writer(out, scene);
   out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!out) return fail(Errc::io, "R-FIL-1");
   writer.header_bytes_ = writer.offset_ = bytes.size();
@@ -47,8 +62,11 @@ Result<void> StreamFileWriter::write_record(std::uint8_t type, std::span<const s
   return {};
 }
 
-Result<void> StreamFileWriter::add(std::int64_t tick, std::span<const std::uint8_t> packet, bool key) try {
+Result<void> StreamFileWriter::add(std::int64_t tick, std::uint64_t number, std::span<const std::uint8_t> packet, bool key) try {
   if (tick < tick_ || tick >= kTickLimit) return fail(Errc::invalid_argument, "R-API-5");
+  std::uint64_t* const newest = numbers_.of(packet);
+  if (newest == nullptr || !is_number(number) || (*newest != 0 && number != *newest + 1))
+    return fail(Errc::invalid_argument, "R-API-5");
   const Entry entry{tick, offset_};
   payload_.clear();
   ByteWriter w(payload_);
@@ -57,6 +75,7 @@ Result<void> StreamFileWriter::add(std::int64_t tick, std::span<const std::uint8
   record_.reserve(payload_.size() + kRecordExtra);
   if (key) keys_.push_back(entry);
   TACTUS_CHECK(write_record(kPacket, payload_));  // allocates nothing any more
+  *newest = number;
   tick_ = tick;
   return {};
 } catch (const std::bad_alloc&) {
@@ -91,6 +110,7 @@ Result<StreamFileReader> StreamFileReader::open(std::span<const std::uint8_t> fi
   reader.file_ = file;
   reader.scene_ = std::move(parsed.scene);
   reader.limits_ = limits;
+  reader.numbers_ = PacketNumbers(*reader.scene_);
   reader.first_ = reader.position_ = parsed.size;
   return reader;
 } catch (const std::bad_alloc&) {
@@ -104,10 +124,14 @@ Result<StreamFileReader::Record> StreamFileReader::read_record(std::size_t at) c
   const std::uint64_t size = in.varint();
   if (in.overlong()) return fail(Errc::malformed, "R-FIL-6", in.bit_offset());
   if (!in.ok()) return fail(Errc::truncated, "R-FIL-2", in.bit_offset());
-  if (record.type < kFirstExtension && (record.type < kPacket || record.type > kTrailer)) {
+  if (record.type < kFirstExtension && (record.type < kPacket || record.type > kNumbered)) {
     return fail(Errc::unsupported, "R-FIL-3", 8 * static_cast<std::uint64_t>(at));
   }
-  if (record.type == kPacket && size > std::uint64_t{limits_.packet_bytes} + kMostBeforePacket) {
+  if (is_packet(record.type) && packet_type_ != 0 && record.type != packet_type_) {
+    return fail(Errc::malformed, "R-FIL-9", 8 * static_cast<std::uint64_t>(at));
+  }
+  const std::uint64_t before = kMostBeforePacket + (record.type == kNumbered ? kMostOfNumber : 0);
+  if (is_packet(record.type) && size > std::uint64_t{limits_.packet_bytes} + before) {
     return fail(Errc::limit_exceeded, "R-FIL-4", in.bit_offset());
   }
   if (record.type == kTrailer && size != kTrailerPayload) return fail(Errc::malformed, "R-FIL-6", in.bit_offset());
@@ -121,21 +145,33 @@ Result<StreamFileReader::Record> StreamFileReader::read_record(std::size_t at) c
   return record;
 }
 
+Result<FilePacket> StreamFileReader::read_packet(const Record& record) noexcept {
+  ByteReader in(record.payload, record.start);
+  const std::uint64_t delta = in.varint();
+  if (!in.ok() || delta >= static_cast<std::uint64_t>(kTickLimit - tick_))
+    return fail(Errc::malformed, "R-FIL-6", in.bit_offset());
+  FilePacket out;
+  if (record.type == kNumbered) {
+    out.number = in.varint();
+    if (!in.ok() || !is_number(out.number)) return fail(Errc::malformed, "R-FIL-6", in.bit_offset());
+  }
+  out.bytes = in.bytes(in.remaining());
+  if (record.type == kPacket) {
+    std::uint64_t* const newest = numbers_.of(out.bytes);
+    out.number = newest != nullptr ? ++*newest : 1;
+  }
+  out.tick = tick_ += static_cast<std::int64_t>(delta);
+  packet_type_ = record.type;
+  position_ = record.end;
+  return out;
+}
+
 Result<std::optional<FilePacket>> StreamFileReader::next() noexcept {
   while (position_ < file_.size()) {
     const std::uint64_t here = 8 * static_cast<std::uint64_t>(position_);
     if (complete_) return fail(Errc::malformed, "R-FIL-8", here);
     TACTUS_TRY(const Record record, read_record(position_));
-    if (record.type == kPacket) {
-      ByteReader in(record.payload, record.start);
-      const std::uint64_t delta = in.varint();
-      if (!in.ok() || delta >= static_cast<std::uint64_t>(kTickLimit - tick_)) {
-        return fail(Errc::malformed, "R-FIL-6", in.bit_offset());
-      }
-      tick_ += static_cast<std::int64_t>(delta);
-      position_ = record.end;
-      return FilePacket{tick_, in.bytes(in.remaining())};
-    }
+    if (is_packet(record.type)) return read_packet(record);
     complete_ = record.type == kTrailer;
     position_ = record.end;
   }
@@ -168,12 +204,13 @@ bool StreamFileReader::seek(std::int64_t tick) noexcept {
   }
   if (best_offset < first_ || best_offset >= file_.size()) return false;
   const auto record = read_record(static_cast<std::size_t>(best_offset));
-  if (!record || record->type != kPacket) return false;
+  if (!record || !is_packet(record->type)) return false;
   const std::uint64_t delta = ByteReader(record->payload).varint();
   if (delta > best_tick) return false;
   position_ = static_cast<std::size_t>(best_offset);
   tick_ = static_cast<std::int64_t>(best_tick - delta);
   complete_ = false;
+  numbers_.reset();
   return true;
 }
 

@@ -34,21 +34,17 @@ struct RigidUpdate {
 struct Packet {
   std::span<const std::uint8_t> bytes;  ///< with the number of its substream; valid until the sender's next call of encode()
   std::size_t substream = 0;            ///< 0: the rigid objects; i + 1: deformable object i; the next: the loads
-  std::uint16_t sequence = 0;           ///< in its substream
-  std::uint64_t number = 0;             ///< the same, not wrapped
-  bool key = false;                     ///< builds on the initial state: a tick to seek to
-  Layer layer = Layer::all;             ///< deformable objects: which vertices it codes
-  Reason reason = Reason::request;      ///< rigid objects: strongest among the updates (haptic > visual > heartbeat > request)
-  std::uint32_t updates = 0;            ///< objects, or vertices with a residual of their own
+  std::uint64_t number = 0;         ///< above that of every packet of its substream before; the packet itself does not name it
+  bool key = false;                 ///< builds on the initial state: a tick to seek to
+  Layer layer = Layer::all;         ///< deformable objects: which vertices it codes
+  Reason reason = Reason::request;  ///< rigid objects: strongest among the updates (haptic > visual > heartbeat > request)
+  std::uint32_t updates = 0;        ///< objects, or vertices with a residual of their own
 };
 
 /// A packet that was received and decoded.
 struct DecodedPacket {
   std::size_t substream = 0;
-  std::uint16_t sequence = 0;
-  std::uint64_t number = 0;  ///< the sequence, extended so that it does not wrap, above 0: the order of sending
-  bool restarts =
-      false;  ///< a key packet of another or restarted sender, or after a long outage: nothing before it is a baseline
+  std::uint64_t number = 0;  ///< as pushed: the order of sending
   bool key = false;
   std::uint64_t baseline = 0;  ///< number of the packet that it builds on; 0: a key packet
   std::int64_t tick = 0;

@@ -25,12 +25,8 @@ struct LinkState {
 };
 
 struct SenderPolicy {
-  /// [s] After this long the next packet builds on the initial state (a tick to seek to). 0: never, but after a silence of half
-  /// the time of 25-packet section 5 (8192 ticks, or 8 s if that is longer), when receivers may soon have forgotten what there was.
+  /// [s] After this long the next packet builds on the initial state (a tick to seek to). 0: never.
   double key_interval = 5.0;
-  /// A sender restarted for the same receivers takes another number, at random. Its key packet does not name the objects at their
-  /// initial state: a receiver that showed an earlier run goes on showing these as before, unless it begins anew as well.
-  std::uint16_t first_sequence = 1;
   Baseline baseline = Baseline::previous;
   /// [s] After this long without a packet of the rigid objects one of them is sent again, and at once at the beginning: a receiver that
   /// shows the past then knows the time. 0: never. Where states are acknowledged it does what the heartbeat of every object would.

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What all substreams share: packet heads, order of packets, stored baselines. Internal to the library.
+/// What all substreams share: numbers, packet heads, stored baselines. Internal to the library.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -38,7 +37,9 @@ Result<SubstreamPacket> split_substream(const Scene& scene, std::span<const std:
 // ==== packet head ====
 // The head of every payload: its baseline and its tick. spec/40-rigid.md section 2.
 
-inline constexpr std::int64_t kTickLimit = 0xffffffff;  ///< ticks of packets are below
+inline constexpr std::int64_t kTickLimit = 0xffffffff;                 ///< ticks of packets are below
+inline constexpr std::uint64_t kNumberLimit = std::uint64_t{1} << 62;  ///< numbers of packets are below, and above 0
+constexpr bool is_number(std::uint64_t number) noexcept { return number > 0 && number < kNumberLimit; }
 
 struct PacketHead {
   bool key = false;
@@ -46,10 +47,8 @@ struct PacketHead {
   std::uint32_t tick_delta = 0;      ///< from the baseline's tick
 };
 
-/// Largest baseline_delta.   in  span  of the scene;  numbered  packets have given numbers, which need not be consecutive
-constexpr std::uint32_t farthest_baseline(std::uint32_t span, bool numbered) noexcept {
-  return numbered && span > 1 ? 4095 : span;
-}
+/// Largest baseline_delta of a scene: numbers need not be consecutive. With a span of 1 it is not coded.
+constexpr std::uint32_t farthest_baseline(std::uint32_t span) noexcept { return span > 1 ? 4095 : 1; }
 
 /// Key and baseline, as range-coded payloads have them.   in  models  with members key and baseline
 template <class Coder, class Models>
@@ -57,65 +56,6 @@ void code_baseline(Coder& coder, Models& models, std::uint8_t span, PacketHead& 
   head.key = coder.bit(models.key, head.key ? 1u : 0u);
   if (!head.key && span > 1) head.baseline_delta = coder.magnitude(models.baseline, head.baseline_delta);
 }
-
-// ==== packet order ====
-// Decides which packets a receiver may decode, by number, tick and clock. spec/25-packet.md sections 4 and 5. Internal to the
-// library.
-
-/// Ticks without an accepted packet after which a receiver with a clock drops its states, before 16-bit numbers can wrap.
-constexpr std::int64_t forget_ticks(std::uint32_t tick_rate) noexcept {
-  return std::max<std::int64_t>(1 << 14, 16 * std::int64_t{tick_rate});
-}
-
-/// Unwrapped sequence numbers: a packet carries `number` modulo 2^16.
-class PacketOrder {
- public:
-  explicit PacketOrder(std::uint32_t tick_rate) noexcept : forget_(forget_ticks(tick_rate)) {}
-
-  /// True if the receiver's clock says that numbers may have wrapped since the newest packet: states kept are ambiguous.
-  bool outlasts(std::optional<std::int64_t> now) const noexcept { return now && arrival_ && *now - *arrival_ > forget_; }
-  /// in  keeps  the receiver keeps a state
-  std::uint64_t number_of(std::uint16_t sequence, bool keeps) const noexcept {
-    const auto behind = static_cast<std::uint16_t>(newest_ - sequence);
-    if (keeps && behind < kBehind) return newest_ - behind;
-    return newest_ + 1 + static_cast<std::uint16_t>(sequence - newest_ - 1);
-  }
-  /// The packets of a session come with their numbers, which count from any value above 0.
-  /// in   number  of one that comes while no state is kept: none is reordered yet, whatever was refused before
-  void begin(std::uint64_t number) noexcept {
-    numbered_ = true;
-    newest_ = number - 1;
-  }
-  bool is_numbered() const noexcept { return numbered_; }
-  /// True for a repeated packet, and for one that others sent after it came before.
-  bool is_reordered(std::uint64_t number) const noexcept { return number <= newest_; }
-  /// True for a number that one sender cannot reach: another sender, or a long outage at the receiver (R-PKT-7).
-  bool is_foreign(std::uint64_t number) const noexcept { return !numbered_ && number > newest_ + kAhead; }
-  /// Ticks of one sender never decrease. A key packet with an earlier tick starts a new sequence.
-  bool fits(std::uint64_t number, bool key, std::int64_t tick) const noexcept {
-    return is_reordered(number) ? tick <= tick_ : key || tick >= tick_;
-  }
-  /// True for a key packet after which no state before it may serve as a baseline.   pre  fits()
-  bool restarts(std::uint64_t number, bool key, std::int64_t tick) const noexcept {
-    return key && !is_reordered(number) && (is_foreign(number) || tick < tick_);
-  }
-  void accept(std::uint64_t number, std::int64_t tick, std::optional<std::int64_t> now) noexcept {
-    if (is_reordered(number)) return;
-    newest_ = number;
-    tick_ = tick;
-    arrival_ = now;
-  }
-
- private:
-  static constexpr std::uint16_t kBehind = 128;
-  static constexpr std::uint64_t kAhead = 32767;
-
-  std::int64_t forget_;
-  std::optional<std::int64_t> arrival_;  // of the newest accepted
-  std::uint64_t newest_ = 1 << 16;       // highest number accepted; numbers stay above 0
-  std::int64_t tick_ = 0;                // of the newest
-  bool numbered_ = false;                // by a session
-};
 
 // ==== baseline ring ====
 // The newest states of a substream, by the number of the packet that made them. spec/25-packet.md sections 4 and 5. Internal to the
@@ -141,9 +81,6 @@ class BaselineRing {
   const std::uint64_t* lowest() const noexcept {
     const Slot* out = first_of([](const Slot& a, const Slot& b) { return a.number < b.number; });
     return out != nullptr ? &out->number : nullptr;
-  }
-  bool empty() const noexcept {
-    return std::none_of(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.held; });
   }
   /// State shown at `tick` by a client that shows the past: the newest held that is not later, else the oldest. spec/60-client.md 6
   const State& at(std::int64_t tick) const noexcept {
@@ -173,10 +110,6 @@ class BaselineRing {
     slots_[newest_].held = false;
     const Slot* left = first_of([](const Slot& a, const Slot& b) { return a.number > b.number; });
     newest_ = left != nullptr ? static_cast<std::size_t>(left - slots_.data()) : slots_.size();
-  }
-  /// Hold none. newest() stays what it is.
-  void clear() noexcept {
-    for (Slot& slot : slots_) slot.held = false;
   }
 
  private:

@@ -26,13 +26,11 @@ class KeyPolicy {
  public:
   /// in   interval  [s] between key packets; 0: only the necessary ones
   KeyPolicy(double interval, std::uint32_t tick_rate) noexcept
-      : interval_(static_cast<std::int64_t>(std::ceil(interval * tick_rate))), silence_(forget_ticks(tick_rate)) {}
+      : interval_(static_cast<std::int64_t>(std::ceil(interval * tick_rate))) {}
 
-  /// True for the first packet, once per interval, on request, and after a pause so long that receivers may soon drop their
-  /// states.
-  /// in   last  tick of the last packet
-  bool is_due(std::int64_t tick, std::int64_t last) const noexcept {
-    return requested_ || key_tick_ < 0 || (interval_ > 0 && tick - key_tick_ >= interval_) || 2 * (tick - last) > silence_;
+  /// True for the first packet, once per interval, and on request.
+  bool is_due(std::int64_t tick) const noexcept {
+    return requested_ || key_tick_ < 0 || (interval_ > 0 && tick - key_tick_ >= interval_);
   }
   void request() noexcept { requested_ = true; }
   /// True if the next packet must be sent even if every bound holds.
@@ -43,7 +41,7 @@ class KeyPolicy {
   }
 
  private:
-  std::int64_t interval_, silence_;
+  std::int64_t interval_;
   std::int64_t key_tick_ = -1;  // of the last key packet; -1: none yet
   bool requested_ = false;
 };
@@ -51,18 +49,18 @@ class KeyPolicy {
 // ==== substream encoder ====
 // One substream at a sender: numbers, key packets, and the state that each packet builds on.
 //
-// A `Codec` knows nothing of sequence numbers, loss or acknowledgements:
+// A `Codec` knows nothing of baselines, loss or acknowledgements:
 //   State                                            has a member tick
 //   Result<Payload> encode(request, out)             a payload in `out` if one is needed, and the pending state after it
 //   void commit(base, next)                          writes the pending state to `next`, which may be `base`
 // and, if it wants to know what receivers may lack:
 //   void acknowledge(number)                         the receiver holds the state after this packet
-//   void forget_last()                               the last packet will not be decoded
+//   void forget_last()                               the last packet was never sent
 
 template <class State>
 struct EncodeRequest {
   std::int64_t tick = 0;
-  std::uint64_t number = 0;  ///< of the packet, unwrapped
+  std::uint64_t number = 0;  ///< of the packet
   PacketHead head;           ///< without the tick
   bool requested = false;    ///< a packet is required even if every bound holds
   Layer layer = Layer::all;
@@ -93,45 +91,40 @@ class SubstreamEncoder {
         baseline_(policy.baseline),
         span_(scene.baseline_span),
         substream_(substream),
-        start_(has_substream_number(scene) ? 1 : 0),
-        next_((std::uint64_t{1} << 16) + policy.first_sequence) {
+        start_(has_substream_number(scene) ? 1 : 0) {
     for (std::size_t i = 0; i < layers; ++i) {
       buffers_.emplace_back(start_ + largest);
       buffers_.back()[0] = static_cast<std::uint8_t>(substream);
     }
   }
 
-  /// in   number  given by a session, above all before: the packet does not carry it. Without: counted, and written
+  /// in   number  of the packet, above all before; without: one more than that of the packet before
   /// out  a packet without bytes: no packet is needed
   Result<Packet> encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number = {}) noexcept {
-    if (number) next_ = *number;
-    const State* base = key_.is_due(tick, number ? tick : states_.newest().tick) ? nullptr : baseline(number.has_value());
-    PacketHead head{base == nullptr, static_cast<std::uint32_t>(next_ - base_), 0};
+    const std::uint64_t mine = number.value_or(next_);
+    const State* base = key_.is_due(tick) ? nullptr : baseline_of(mine);
+    PacketHead head{base == nullptr, static_cast<std::uint32_t>(mine - base_), 0};
     if (head.key) base = &states_.initial();
     head.tick_delta = static_cast<std::uint32_t>(tick - base->tick);
     UntouchedBytes& buffer = buffers_[layer == Layer::visual ? 1 : 0];
-    const std::size_t start = start_ + (number ? 0 : 2);
     TACTUS_TRY(const Payload payload,
-               codec_.encode({tick, next_, head, key_.is_requested() || is_overdue(tick), layer, states_.newest(), *base},
-                             std::span(buffer).subspan(start)));
+               codec_.encode({tick, mine, head, key_.is_requested() || is_overdue(tick), layer, states_.newest(), *base},
+                             std::span(buffer).subspan(start_)));
     if (payload.size == 0) return Packet{};
-    const auto sequence = static_cast<std::uint16_t>(next_);
-    for (std::size_t i = start_; i < start; ++i) buffer[i] = static_cast<std::uint8_t>(sequence >> 8 * (i - start_));
     before_ = {key_, base_};
     repeats_ = is_overdue(tick) ? std::min(repeats_ + 1, kMostRepeats) : 0;
-    newest_ = next_;
-    states_.put(next_, [&](State& next) {
+    newest_ = mine;
+    next_ = mine + 1;
+    states_.put(mine, [&](State& next) {
       codec_.commit(*base, next);
       next.tick = tick;
     });
     key_.sent(tick, head.key);
-    if (baseline_ == Baseline::previous) base_ = next_;
-    ++next_;
+    if (baseline_ == Baseline::previous) base_ = mine;
     can_forget_ = true;
-    return Packet{.bytes = std::span<const std::uint8_t>(buffer).first(start + payload.size),
+    return Packet{.bytes = std::span<const std::uint8_t>(buffer).first(start_ + payload.size),
                   .substream = substream_,
-                  .sequence = sequence,
-                  .number = next_ - 1,
+                  .number = mine,
                   .key = head.key,
                   .layer = layer,
                   .reason = payload.reason,
@@ -143,10 +136,12 @@ class SubstreamEncoder {
     if (baseline_ == Baseline::acknowledged) base_ = 0, oldest_ = next_;
   }
 
-  /// Report that the last packet will not be decoded. At most once per packet.
+  /// Report that the last packet was never sent. Its number is free again. At most once per packet.
   void forget_last() noexcept {
     if (!std::exchange(can_forget_, false)) return;
     states_.pop();
+    --next_;
+    oldest_ = oldest_ < next_ ? oldest_ : next_;
     if constexpr (requires { codec_.forget_last(); }) codec_.forget_last();
     const bool requested = key_.is_requested();
     key_ = before_.key;
@@ -155,10 +150,9 @@ class SubstreamEncoder {
     newest_ = 0;
   }
 
-  /// Report that the receiver holds the state after packet `sequence`.
-  void acknowledge(std::uint16_t sequence) noexcept {
+  /// Report that the receiver holds the state after packet `number`.
+  void acknowledge(std::uint64_t number) noexcept {
     if (baseline_ != Baseline::acknowledged) return;
-    const std::uint64_t number = next_ - static_cast<std::uint16_t>(next_ - sequence);
     if (number < oldest_ || number >= next_) return;
     if constexpr (requires { codec_.acknowledge(number); }) codec_.acknowledge(number);
     if (number > base_ && states_.find(number) != nullptr) base_ = number;
@@ -175,9 +169,9 @@ class SubstreamEncoder {
   Codec& codec() noexcept { return codec_; }
 
  private:
-  /// Baseline of the next packet; null: the initial state.
-  const State* baseline(bool numbered) const noexcept {
-    return next_ - base_ > farthest_baseline(span_, numbered) ? nullptr : states_.find(base_);
+  /// Baseline of a packet of this number; null: the initial state.
+  const State* baseline_of(std::uint64_t number) const noexcept {
+    return number - base_ > farthest_baseline(span_) ? nullptr : states_.find(base_);
   }
 
   bool is_overdue(std::int64_t tick) const noexcept {
@@ -198,7 +192,7 @@ class SubstreamEncoder {
   std::uint32_t span_;
   std::size_t substream_, start_;        // its number; where a packet begins behind that number
   std::vector<UntouchedBytes> buffers_;  // one per layer
-  std::uint64_t next_;                   // number of the next packet, unwrapped
+  std::uint64_t next_ = 1;               // number of the next packet
   std::uint64_t base_ = 0;               // number of the baseline of the next packet
   std::uint64_t oldest_ = 0;             // lowest base_ allowed: a receiver that asked for a key holds none before
   Before before_{key_, 0};               // the last packet

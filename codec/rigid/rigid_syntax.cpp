@@ -8,15 +8,14 @@ namespace tactus {
 
 namespace {
 
-constexpr BitModel kRows[] = {
+constexpr StartModel<4> kRows[] = {
 #include "rigid_start_models.inc"
 };
-static_assert(sizeof kRows == sizeof(RigidModels), "spec/tables/rigid-start-models.csv has one row per model");
 
 }  // namespace
 
 const RigidModels& start_models() noexcept {
-  static constexpr RigidModels models = std::bit_cast<RigidModels>(std::to_array(kRows));
+  static const RigidModels models = unpack<RigidModels>(kRows);
   return models;
 }
 
@@ -170,7 +169,7 @@ std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Pre
 }
 
 std::size_t max_rigid_packet(const Scene& scene) noexcept {
-  constexpr std::size_t kHead = 64;  // sequence, key, baseline, tick, count, tail
+  constexpr std::size_t kHead = 64;  // key, baseline, tick, count, tail
   constexpr std::size_t kUpdate =
       208;  // gap, reason, level, predictor, smoothing_exp, retained, lod and 12 components at 15 bits per adaptive bit
   const std::size_t contact = scene.driven ? 88 : 0;  // 7 more

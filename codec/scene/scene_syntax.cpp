@@ -16,7 +16,6 @@ namespace tactus {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{0x89, 'T', 'C', 'T'};
-constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kRigid = 1;
 constexpr std::uint8_t kProfile = 0;
 constexpr std::uint16_t kHasDeformables = 1, kHasLoads = 2, kIsSmoothed = 4, kHasMotion = 8, kIsDriven = 16, kIsElastic = 32,
@@ -209,7 +208,7 @@ Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
   out.reserve(kFixedSize + body.size() + 4);
   ByteWriter w(out);
   for (const std::uint8_t byte : kMagic) w.u8(byte);
-  w.u8(kVersion);
+  w.u8(kFormatVersion);
   w.u8(kProfile);
   w.u16(static_cast<std::uint16_t>((scene.deformables.empty() ? 0 : kHasDeformables) | (scene.loads ? kHasLoads : 0) |
                                    (scene.is_smoothed ? kIsSmoothed : 0) | (scene.motion ? kHasMotion : 0) |
@@ -233,7 +232,7 @@ Result<ParsedScene> parse_scene(std::span<const std::uint8_t> bytes, const Decod
   const std::uint16_t flags = in.u16();
   const std::uint32_t body_size = in.u32();
   if (!in.ok()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
-  if (version != kVersion) return fail(Errc::unsupported, "R-STR-2", 32);
+  if (version != kFormatVersion) return fail(Errc::unsupported, "R-STR-2", 32);
   if (profile > kProfile + 1) return fail(Errc::malformed, "R-STR-3", 40);
   if (profile != kProfile) return fail(Errc::unsupported, "R-STR-3", 40);
   constexpr std::uint16_t kAll = kHasDeformables | kHasLoads | kIsSmoothed | kHasMotion | kIsDriven | kIsElastic | kHasInterest;

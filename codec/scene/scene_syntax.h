@@ -12,6 +12,8 @@
 
 namespace tactus {
 
+inline constexpr std::uint8_t kFormatVersion = 2;  ///< of what is written, and the only one that is read
+
 /// Deterministic: equal scenes give equal bytes.   err  limit_exceeded R-API-11: out of memory
 Result<std::vector<std::uint8_t>> write_scene(const Scene& scene);
 

@@ -74,12 +74,12 @@ class DeviceCoder {
   Result<void> add(std::int64_t tick, const DeviceSample& sample, const std::optional<DeviceContact>& touched) {
     const std::optional<DeviceContact> contact = tally.result.signal == Signal::contact ? touched : std::nullopt;
     for (; !acknowledgements.empty() && acknowledgements.front().tick <= tick; acknowledgements.pop_front())
-      sender.acknowledge(0, acknowledgements.front().sequence);
+      sender.acknowledge(0, acknowledgements.front().number);
     TACTUS_TRY(const auto packets, tally.timed([&] { return sender.encode(tick, truth.of(tick, sample, contact)); }));
     if (!sender.held().empty()) return tl::unexpected(Error{Errc::invalid_argument, sender.held().front().rule});
     for (const Packet& packet : packets) {
-      TACTUS_CHECK(receiver.push(packet.bytes, tick));
-      acknowledgements.push_back({tick + ack_timeout, packet.sequence});
+      TACTUS_CHECK(receiver.push(packet.number, packet.bytes, tick));
+      acknowledgements.push_back({tick + ack_timeout, packet.number});
       ++tally.result.packets;
       tally.result.bytes += packet.bytes.size();
     }
@@ -99,7 +99,7 @@ class DeviceCoder {
 
   struct Acknowledgement {
     std::int64_t tick = 0;
-    std::uint16_t sequence = 0;
+    std::uint64_t number = 0;
   };
   DeviceCoding coding;
   Sender sender;

@@ -24,7 +24,7 @@ constexpr std::uint32_t kColumns = 20, kRows = 33;  // of the sheet: 714 vertice
 constexpr std::size_t kVertices = (kColumns + 1) * (kRows + 1);
 constexpr std::size_t kBatch = 256;  // calls between two looks at the clock
 
-/// A scene and packets of it, to be pushed in this order.
+/// A scene and packets of its one substream, numbered from 1.
 struct Stream {
   SharedScene scene;
   std::vector<std::vector<std::uint8_t>> packets;
@@ -63,7 +63,7 @@ void push(benchmark::State& state, const Stream& stream) {
     state.PauseTiming();
     typename Language::Decoder decoder(stream.scene);
     state.ResumeTiming();
-    for (std::size_t i = 0; i < kBatch; ++i) decoder.push(stream.packets[i]);
+    for (std::size_t i = 0; i < kBatch; ++i) decoder.push(i + 1, stream.packets[i]);
   }
 }
 template <class Language>
@@ -79,7 +79,7 @@ template <class Language>
 void show_poses(benchmark::State& state) {
   const Stream stream = rigid_stream();
   typename Language::Decoder decoder(stream.scene);
-  for (const auto& packet : stream.packets) decoder.push(packet);
+  for (std::size_t i = 0; i < stream.packets.size(); ++i) decoder.push(i + 1, stream.packets[i]);
   std::vector<typename Language::Shown> shown(kObjects);
   std::int64_t tick = 0;
   for (auto _ : state) {
@@ -92,7 +92,7 @@ template <class Language>
 void show_mesh(benchmark::State& state) {
   const Stream stream = mesh_stream();
   typename Language::Decoder decoder(stream.scene);
-  for (const auto& packet : stream.packets) decoder.push(packet);
+  for (std::size_t i = 0; i < stream.packets.size(); ++i) decoder.push(i + 1, stream.packets[i]);
   std::vector<float> shown(3 * kVertices);
   std::int64_t tick = 0;
   for (auto _ : state) {

@@ -43,7 +43,8 @@ for (const kind of ["rigid", "mesh"]) {
   report(`push_${kind}`, () => {
     receiver?.close();
     receiver = tactus.createReceiver(scene);
-    return (packet) => receiver.push(packet);
+    let number = 0;
+    return (packet) => receiver.push(++number, packet);
   }, packets);
   if (kind === "mesh") {
     const out = new Float32Array(3 * scene.deformables[0].vertices);

@@ -55,13 +55,13 @@ def dented(mesh, tick):
 
 
 def packets_of(scene, truth_at):
-    """The first packets of a scene, and a stream file that holds them."""
+    """The first packets of a scene with their numbers, and a stream file that holds them."""
     out, tick = [], 0
     with tactus.Sender(scene) as sender, tactus.StreamWriter(scene) as writer:
         while len(out) < PACKETS:
             for packet in sender.encode(tick, **truth_at(tick)):
                 writer.add(packet)
-                out.append(packet.data)
+                out.append((packet.number, packet.data))
             tick += 1
         return out, writer.finish()
 
@@ -81,8 +81,13 @@ def times(call, arguments, rounds=9):
 def decoder_rows(kind, scene, packets):
     decoder = tactus.Receiver(scene)
     for packet in packets:
-        decoder.push(packet)
-    yield f"push_{kind}", times(lambda: tactus.Receiver(scene).push, packets)
+        decoder.push(*packet)
+
+    def pushes():
+        push = tactus.Receiver(scene).push
+        return lambda packet: push(*packet)
+
+    yield f"push_{kind}", times(pushes, packets)
     if kind == "mesh":
         yield "show_mesh", times(lambda: lambda tick: decoder.displacements(0, tick), range(2000, 6000))
     else:

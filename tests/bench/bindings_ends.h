@@ -78,7 +78,7 @@ struct Cpp {
   class Decoder {
    public:
     explicit Decoder(const SharedScene& scene) : receiver_(must(Receiver::create(scene))) {}
-    void push(std::span<const std::uint8_t> packet) { must(receiver_.push(packet)); }
+    void push(std::uint64_t number, std::span<const std::uint8_t> packet) { must(receiver_.push(number, packet)); }
     void poses(std::int64_t tick, std::span<Pose> out) {
       for (std::uint32_t i = 0; i < out.size(); ++i) out[i] = receiver_.pose(i, tick);
     }
@@ -186,8 +186,8 @@ struct C {
       must(tactus_receiver_create(scene_of(scene).get(), nullptr, &made, nullptr));
       receiver_.reset(made);
     }
-    void push(std::span<const std::uint8_t> packet) {
-      must(tactus_receiver_push(receiver_.get(), packet.data(), packet.size(), TACTUS_NO_CLOCK, nullptr, nullptr));
+    void push(std::uint64_t number, std::span<const std::uint8_t> packet) {
+      must(tactus_receiver_push(receiver_.get(), number, packet.data(), packet.size(), TACTUS_PACKET_TICK, nullptr, nullptr));
     }
     void poses(std::int64_t tick, std::span<tactus_pose> out) {
       must(tactus_receiver_poses(receiver_.get(), tick, 0, out.size(), out.data(), nullptr, nullptr));

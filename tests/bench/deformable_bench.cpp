@@ -110,7 +110,8 @@ void decode_frame(benchmark::State& state, Kind kind) {
       state.ResumeTiming();
     }
     const auto start = Clock::now();
-    const auto decoded = receiver.push(packets[next++]);
+    const std::uint64_t number = next + 1;
+    const auto decoded = receiver.push(number, packets[next++]);
     const auto end = Clock::now();
     if (times.size() < times.capacity()) times.push_back(microseconds(end - start));
     if (!decoded) state.SkipWithError(decoded.error().rule);

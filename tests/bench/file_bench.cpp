@@ -18,7 +18,8 @@ void file_write(benchmark::State& state) {
   for (auto _ : state) {
     std::ostringstream out;
     auto writer = StreamFileWriter::create(out, *scene).value();
-    for (std::int64_t tick = 0; tick < kPackets; ++tick) (void)writer.add(tick, packet, tick % 5000 == 0);
+    for (std::int64_t tick = 0; tick < kPackets; ++tick)
+      (void)writer.add(tick, static_cast<std::uint64_t>(tick + 1), packet, tick % 5000 == 0);
     (void)writer.finish();
     benchmark::DoNotOptimize(writer.bytes());
   }
@@ -30,7 +31,8 @@ void file_read(benchmark::State& state) {
   std::ostringstream out;
   auto writer = StreamFileWriter::create(out, *testing::scene_of(1)).value();
   const std::vector<std::uint8_t> packet(12, 0x5a);
-  for (std::int64_t tick = 0; tick < kPackets; ++tick) (void)writer.add(tick, packet, tick == 0);
+  for (std::int64_t tick = 0; tick < kPackets; ++tick)
+    (void)writer.add(tick, static_cast<std::uint64_t>(tick + 1), packet, tick == 0);
   (void)writer.finish();
   const std::string text = out.str();
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());

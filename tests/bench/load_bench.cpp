@@ -36,7 +36,7 @@ void load_ticks(benchmark::State& state) {
     if (has_loads) loads[0].external.x = -force;
     const auto sent = sender.encode(tick++, {.objects = still, .loads = loads});
     for (const Packet& packet : sent.value_or(std::span<const Packet>())) {
-      benchmark::DoNotOptimize(receiver.push(packet.bytes).has_value());
+      benchmark::DoNotOptimize(receiver.push(packet.number, packet.bytes).has_value());
       packets += packet.substream > 0;
       bytes += packet.substream > 0 ? packet.bytes.size() : 0;
     }

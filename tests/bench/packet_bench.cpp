@@ -57,16 +57,16 @@ void send_and_accept(benchmark::State& state) {
   policy.baseline = delay == 0 ? Baseline::previous : Baseline::acknowledged;
   SubstreamEncoder<HeadEncoder> encoder(*scene, policy, 0, 64, 1, TickState{});
   SubstreamDecoder<HeadDecoder> decoder(*scene, {}, TickState{});
-  std::vector<std::uint16_t> sent(64);
+  std::vector<std::uint64_t> sent(64);
   std::int64_t tick = 0;
   for (auto _ : state) {
     const Packet packet = encoder.encode(++tick, Layer::all).value();
-    if (const auto decoded = decoder.decode(packet.bytes, std::nullopt); !decoded) {
+    if (const auto decoded = decoder.decode(packet.number, packet.bytes); !decoded) {
       state.SkipWithError(decoded.error().rule);
       break;
     }
     const auto at = static_cast<std::size_t>(tick);
-    sent[at % sent.size()] = packet.sequence;
+    sent[at % sent.size()] = packet.number;
     if (delay > 0 && at > delay) encoder.acknowledge(sent[(at - delay) % sent.size()]);
   }
 }
@@ -78,11 +78,11 @@ void refuse_late(benchmark::State& state) {
   SubstreamEncoder<HeadEncoder> encoder(*scene, {}, 0, 64, 1, TickState{});
   SubstreamDecoder<HeadDecoder> decoder(*scene, {}, TickState{});
   const Packet packet = encoder.encode(1, Layer::all).value();
-  if (!decoder.decode(packet.bytes, std::nullopt)) state.SkipWithError("the first one is refused");
+  if (!decoder.decode(packet.number, packet.bytes)) state.SkipWithError("the first one is refused");
   std::span<const std::uint8_t> bytes = packet.bytes;
   for (auto _ : state) {
     benchmark::DoNotOptimize(bytes);
-    if (decoder.decode(bytes, std::nullopt)) {
+    if (decoder.decode(packet.number, bytes)) {
       state.SkipWithError("a late packet is accepted");
       break;
     }

@@ -136,7 +136,8 @@ void decode_update(benchmark::State& state) {
       next = 0;
       state.ResumeTiming();
     }
-    auto decoded = receiver.push(packets[next++]);
+    const std::uint64_t number = next + 1;
+    auto decoded = receiver.push(number, packets[next++]);
     if (!decoded) state.SkipWithError(decoded.error().rule);
     benchmark::DoNotOptimize(decoded);
   }

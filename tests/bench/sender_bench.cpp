@@ -116,21 +116,26 @@ void send_tick(benchmark::State& state) {
   watch.report(state);
 }
 
+struct Numbered {
+  std::uint64_t number = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
 /// Pushes all packets; null, or the rule that one breaks.
-const char* push_all(Receiver& receiver, std::span<const std::vector<std::uint8_t>> packets) {
-  for (const auto& packet : packets)
-    if (const auto decoded = receiver.push(packet); !decoded) return decoded.error().rule;
+const char* push_all(Receiver& receiver, std::span<const Numbered> packets) {
+  for (const auto& [number, bytes] : packets)
+    if (const auto decoded = receiver.push(number, bytes); !decoded) return decoded.error().rule;
   return nullptr;
 }
 
 void push_tick(benchmark::State& state) {
   const Recording recording = record(static_cast<std::size_t>(state.range(0)));
   Sender sender = make_sender(recording);
-  std::vector<std::vector<std::vector<std::uint8_t>>> ticks(kTicks);
+  std::vector<std::vector<Numbered>> ticks(kTicks);
   for (std::size_t k = 0; k < kTicks; ++k) {
     const auto tick = static_cast<std::int64_t>(k);
     const auto sent = sender.encode(tick, truth_at(recording, tick)).value();
-    for (const Packet& packet : sent) ticks[k].emplace_back(packet.bytes.begin(), packet.bytes.end());
+    for (const Packet& packet : sent) ticks[k].push_back({packet.number, {packet.bytes.begin(), packet.bytes.end()}});
   }
   auto receiver = Receiver::create(recording.scene).value();
   Watch watch;

@@ -176,7 +176,7 @@ void send_device(benchmark::State& state) {
     if (!sent) return state.SkipWithError(sent.error().rule);
     packets += sent->size();
     ++tick;
-    for (const Packet& packet : *sent) sender.acknowledge(packet.substream, packet.sequence);
+    for (const Packet& packet : *sent) sender.acknowledge(packet.substream, packet.number);
   }
   state.counters["packets"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
 }

@@ -48,8 +48,8 @@ void device_ticks(benchmark::State& state) {
     if (state.range(0) == 1) contact = DeviceContact{{sample.position.x, sample.position.y, 0.04}, 500};
     const auto sent = sender.encode(tick, truth.of(tick, sample, contact));
     for (const Packet& packet : sent.value_or(std::span<const Packet>())) {
-      benchmark::DoNotOptimize(receiver.push(packet.bytes).has_value());
-      sender.acknowledge(packet.substream, packet.sequence);
+      benchmark::DoNotOptimize(receiver.push(packet.number, packet.bytes).has_value());
+      sender.acknowledge(packet.substream, packet.number);
       ++packets;
     }
     benchmark::DoNotOptimize(device_at(receiver, tick++, 0));

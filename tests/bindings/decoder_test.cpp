@@ -89,8 +89,8 @@ TEST(CDecoder, ReceiverReportsUpdatesAndAdvice) {
       if (++sent_packets == 3) continue;  // lost
       tactus_packet_info info = sized<tactus_packet_info>();
       tactus_error error{};
-      if (tactus_receiver_push(receiver.get(), packet.bytes.data(), packet.bytes.size(), TACTUS_NO_CLOCK, &info, &error) ==
-          TACTUS_OK) {
+      if (push(receiver, packet, TACTUS_PACKET_TICK, &info, &error) == TACTUS_OK) {
+        EXPECT_EQ(info.number, packet.info.number);
         EXPECT_EQ(info.reason, packet.info.reason);
         ASSERT_EQ(tactus_receiver_updates(receiver.get(), updates, 2, &count, nullptr), TACTUS_OK);
         ASSERT_EQ(count, 1u);

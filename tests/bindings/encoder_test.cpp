@@ -146,8 +146,7 @@ TEST(CEncoder, ClustersMakeAStreamSmallerWithinItsBound) {
       given.shape_count = 1;
       for (const Packet& packet : encode(sender, tick, &given)) {
         bytes[with_clusters] += packet.bytes.size();
-        ASSERT_EQ(tactus_receiver_push(receiver.get(), packet.bytes.data(), packet.bytes.size(), tick, nullptr, nullptr),
-                  TACTUS_OK);
+        ASSERT_EQ(push(receiver, packet, tick), TACTUS_OK);
       }
       ASSERT_EQ(tactus_receiver_displacements(receiver.get(), 0, tick, shown.data(), shown.size(), nullptr), TACTUS_OK);
       for (std::size_t i = 0; i < shown.size(); ++i) ASSERT_NEAR(shown[i], truth[i], 3.1e-4) << tick;
@@ -235,6 +234,36 @@ TEST(CEncoder, WhatIsNotAskedForIsCodedAsByTheLibrary) {
     for (std::size_t i = 0; i < sent.size(); ++i) ASSERT_TRUE(std::ranges::equal(sent[i].bytes, wanted[i].bytes)) << tick;
   }
   EXPECT_GT(packets, 10u);
+}
+
+/// Numbers of each substream count from 1, and are what a receiver reports and a sender takes as acknowledged.
+TEST(CEncoder, ANumberGoesWithEachPacketAndComesBack) {
+  auto wide = filled<tactus_scene_options>();
+  wide.baselines = 64;
+  const Scene scene = make_scene(true, &wide);
+  auto options = filled<tactus_sender_options>();
+  options.baseline = TACTUS_BASELINE_ACKNOWLEDGED;
+  options.key_interval = 0;
+  const Sender sender = make_sender(scene, &options);
+  const Receiver receiver = make_receiver(scene);
+  Truth truth(true);
+  std::uint64_t last[2] = {};
+  std::uint32_t keys = 0;
+  for (std::int64_t tick = 0; tick < 500; ++tick) {
+    for (const Packet& packet : encode(sender, tick, truth.at(tick))) {
+      EXPECT_EQ(packet.info.number, ++last[packet.info.substream]);
+      EXPECT_EQ(packet.info.reserved, 0u);
+      if (packet.info.number % 3 == 0) continue;  // lost
+      auto info = sized<tactus_packet_info>();
+      ASSERT_EQ(push(receiver, packet, TACTUS_PACKET_TICK, &info), TACTUS_OK) << tick;
+      EXPECT_EQ(info.number, packet.info.number);
+      keys += info.key;
+      ASSERT_EQ(tactus_sender_acknowledge(sender.get(), info.substream, info.number, nullptr), TACTUS_OK);
+    }
+  }
+  EXPECT_GT(last[0], 3u);
+  EXPECT_GT(last[1], 3u);
+  EXPECT_EQ(keys, 2u) << "the first of each; all others build on what was acknowledged";
 }
 
 /// What is left open depends on the bound that is declared.

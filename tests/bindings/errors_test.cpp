@@ -205,11 +205,13 @@ TEST(CErrors, ReceiverRefuses) {
   constexpr std::int64_t kFar = INT64_MAX;
   EXPECT_REFUSED(kBad, tactus_receiver_create, nullptr, nullptr, &out);
   EXPECT_REFUSED(kBad, tactus_receiver_create, scene.get(), nullptr, nullptr);
-  EXPECT_REFUSED(kBad, tactus_receiver_push, nullptr, &byte, 1, 0, nullptr);
-  EXPECT_REFUSED(kBad, tactus_receiver_push, receiver.get(), nullptr, 1, 0, nullptr);
-  EXPECT_REFUSED(kBad, tactus_receiver_push, receiver.get(), &byte, 1, kFar, nullptr);
-  EXPECT_REFUSED(kBad, tactus_receiver_push, receiver.get(), &byte, 1, 0, &small);
-  EXPECT_REFUSED("R-PKT-6", tactus_receiver_push, receiver.get(), nullptr, 0, TACTUS_NO_CLOCK, nullptr);
+  EXPECT_REFUSED(kBad, tactus_receiver_push, nullptr, 1, &byte, 1, 0, nullptr);
+  EXPECT_REFUSED(kBad, tactus_receiver_push, receiver.get(), 1, nullptr, 1, 0, nullptr);
+  EXPECT_REFUSED(kBad, tactus_receiver_push, receiver.get(), 1, &byte, 1, kFar, nullptr);
+  EXPECT_REFUSED(kBad, tactus_receiver_push, receiver.get(), 1, &byte, 1, 0, &small);
+  for (const std::uint64_t number : {std::uint64_t{0}, std::uint64_t{1} << 62, UINT64_MAX})
+    EXPECT_REFUSED("R-API-5", tactus_receiver_push, receiver.get(), number, &byte, 1, TACTUS_PACKET_TICK, nullptr);
+  EXPECT_REFUSED("R-PKT-6", tactus_receiver_push, receiver.get(), 1, nullptr, 0, TACTUS_PACKET_TICK, nullptr);
   EXPECT_REFUSED(kBad, tactus_receiver_poses, receiver.get(), 0, 0, 3, poses, nullptr);
   EXPECT_REFUSED(kBad, tactus_receiver_poses, receiver.get(), 0, 3, 0, poses, nullptr);
   EXPECT_REFUSED(kBad, tactus_receiver_poses, receiver.get(), 0, 1, SIZE_MAX, poses, nullptr);
@@ -237,7 +239,7 @@ TEST(CErrors, PlayerRefusesAndKeepsItsReceiver) {
   auto info = sized<tactus_player_info>();
   EXPECT_REFUSED(kBad, tactus_player_get, nullptr, &info);
   tactus_receiver* receiver = tactus_player_receiver(raw);
-  EXPECT_REFUSED(kBad, tactus_receiver_push, receiver, file.data(), 1, TACTUS_NO_CLOCK, nullptr);
+  EXPECT_REFUSED(kBad, tactus_receiver_push, receiver, 1, file.data(), 1, TACTUS_PACKET_TICK, nullptr);
   tactus_receiver_destroy(receiver);  // borrowed
   tactus_pose pose;
   EXPECT_EQ(tactus_receiver_poses(receiver, 0, 1, 1, &pose, nullptr, nullptr), TACTUS_OK);
@@ -303,7 +305,9 @@ TEST(CErrors, SenderRefuses) {
   EXPECT_EQ(encoded.held_count, 0u);
   EXPECT_REFUSED("R-API-5", tactus_sender_encode, sender.get(), 5, truth.at(5), &encoded);
   EXPECT_REFUSED(kBad, tactus_sender_acknowledge, sender.get(), 7, 1);
-  EXPECT_REFUSED(kBad, tactus_sender_acknowledge, sender.get(), 0, 1u << 16);
+  EXPECT_REFUSED(kBad, tactus_sender_acknowledge, nullptr, 0, 1);
+  for (const std::uint64_t number : {std::uint64_t{0}, std::uint64_t{1} << 40, UINT64_MAX})
+    EXPECT_EQ(tactus_sender_acknowledge(sender.get(), 0, number, nullptr), TACTUS_OK) << "no packet has it: ignored";
   EXPECT_REFUSED("R-API-4", tactus_sender_set_link, sender.get(), 5, NAN);
   EXPECT_REFUSED("R-API-4", tactus_sender_set_link, sender.get(), -1, 0);
 }
@@ -329,11 +333,14 @@ TEST(CErrors, WriterRefuses) {
   EXPECT_REFUSED(kBad, tactus_writer_create, nullptr, &raw);
   ASSERT_EQ(tactus_writer_create(scene.get(), &raw, nullptr), TACTUS_OK);
   const Writer writer(raw);
-  EXPECT_REFUSED(kBad, tactus_writer_add, raw, 0, nullptr, 1, 0);
-  EXPECT_REFUSED("R-API-5", tactus_writer_add, raw, -1, &byte, 1, 0);
+  EXPECT_REFUSED(kBad, tactus_writer_add, raw, 0, 1, nullptr, 1, 0);
+  EXPECT_REFUSED("R-API-5", tactus_writer_add, raw, -1, 1, &byte, 1, 0);
+  EXPECT_REFUSED("R-API-5", tactus_writer_add, raw, 0, 0, &byte, 1, 0);
+  ASSERT_EQ(tactus_writer_add(raw, 0, 7, &byte, 1, 0, nullptr), TACTUS_OK);
+  for (const std::uint64_t number : {7u, 9u}) EXPECT_REFUSED("R-API-5", tactus_writer_add, raw, 0, number, &byte, 1, 0);
   ASSERT_EQ(tactus_writer_finish(raw, nullptr), TACTUS_OK);
   EXPECT_REFUSED("R-API-5", tactus_writer_finish, raw);
-  EXPECT_REFUSED("R-API-5", tactus_writer_add, raw, 9, &byte, 1, 0);
+  EXPECT_REFUSED("R-API-5", tactus_writer_add, raw, 9, 1, &byte, 1, 0);
   EXPECT_FALSE(take(writer).empty());
   EXPECT_TRUE(take(writer).empty());
 }

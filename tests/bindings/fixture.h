@@ -107,6 +107,11 @@ inline std::vector<Packet> encode(const Sender& sender, std::int64_t tick, const
   return out;
 }
 
+inline tactus_status push(const Receiver& receiver, const Packet& packet, std::int64_t now = TACTUS_PACKET_TICK,
+                          tactus_packet_info* info = nullptr, tactus_error* error = nullptr) {
+  return tactus_receiver_push(receiver.get(), packet.info.number, packet.bytes.data(), packet.bytes.size(), now, info, error);
+}
+
 inline std::vector<std::uint8_t> take(const Writer& writer) {
   std::size_t size = 0;
   EXPECT_NE(tactus_writer_take(writer.get(), nullptr, 0, &size, nullptr), TACTUS_INVALID_ARGUMENT);
@@ -125,7 +130,9 @@ inline std::vector<std::uint8_t> make_stream(bool with_sheet = false, std::int64
   Truth truth(with_sheet);
   for (std::int64_t tick = 0; tick < ticks; ++tick)
     for (const Packet& packet : encode(sender, tick, truth.at(tick)))
-      EXPECT_EQ(tactus_writer_add(raw, tick, packet.bytes.data(), packet.bytes.size(), packet.info.key, nullptr), TACTUS_OK);
+      EXPECT_EQ(
+          tactus_writer_add(raw, tick, packet.info.number, packet.bytes.data(), packet.bytes.size(), packet.info.key, nullptr),
+          TACTUS_OK);
   EXPECT_EQ(tactus_writer_finish(raw, nullptr), TACTUS_OK);
   return take(writer);
 }

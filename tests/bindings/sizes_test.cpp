@@ -284,7 +284,7 @@ TEST_F(CSizes, OfAnEncoder) {
             {136}},
            {"sender_options", 64, Direction::option, initialised<tactus_sender_options>(), taking<tactus_sender_options>(send)},
            {"truth", 72, Direction::option, initialised<tactus_truth>(), taking<tactus_truth>(encode_nothing), {88}},
-           {"packet_info", 64, Direction::answer, {}, taking<tactus_packet_info>(info_of)}})
+           {"packet_info", 56, Direction::answer, {}, taking<tactus_packet_info>(info_of)}})
     check_sizes(call);
 }
 

@@ -56,7 +56,7 @@ def test_sender_and_receiver_agree():
         for tick in range(1000):
             for packet in sender.encode(tick, swing(tick)):
                 assert packet.kind == "rigid" and packet.size == len(packet.data) and packet.tick == tick
-                assert receiver.push(packet.data).updates == 1
+                assert receiver.push(packet).updates == 1
                 sent += 1
             assert np.abs(receiver.poses(tick)[0, :3] - swing(tick)[0][:3]).max() <= 0.006
         assert 5 < sent < 200
@@ -88,9 +88,31 @@ def test_a_mesh_keeps_its_bound():
         shape[:, 2] = 0.01 * math.sin(0.02 * tick)
         for packet in sender.encode(tick, shapes=[tactus.Shape(shape, triangle=0, force=1, stiffness=500)]):
             assert packet.kind == "deformable"
-            receiver.push(packet.data)
+            receiver.push(packet)
         assert np.linalg.norm(receiver.displacements(0, tick) - shape, axis=1).max() <= 2.6e-4
     assert np.allclose(scene.meshes[0].vertices, vertices, atol=1e-6) and (scene.meshes[0].triangles == triangles).all()
+
+
+def test_packets_come_with_their_numbers():
+    """From a network as two things, the number and the bytes; those that come are acknowledged, and the next ones build on them."""
+    scene = tactus.build_scene([tactus.RigidObject("cube")], baselines=64)
+    sender = tactus.Sender(scene, baseline=tactus.BASELINE_ACKNOWLEDGED, key_interval=0)
+    receiver, twin = tactus.Receiver(scene), tactus.Receiver(scene)
+    numbers, keys = [], 0
+    for tick in range(1000):
+        for packet in sender.encode(tick, swing(tick)):
+            numbers.append(packet.number)
+            if packet.number % 3 == 0:
+                continue  # lost
+            decoded = receiver.push(packet.number, packet.data, now=tick + 20)
+            assert decoded.number == packet.number and twin.push(packet).tick == tick
+            keys, newest = keys + decoded.key, packet
+            sender.acknowledge(decoded)
+    assert numbers == list(range(1, len(numbers) + 1)) and len(numbers) > 5 and keys == 1
+    assert receiver.state_hash() == twin.state_hash()
+    with pytest.raises(tactus.Error) as refused:
+        receiver.push(newest)  # again
+    assert refused.value.rule == "R-PKT-5" and refused.value.advice == "drop"
 
 
 def test_one_bad_object_does_not_stop_the_others():
@@ -103,7 +125,7 @@ def test_one_bad_object_does_not_stop_the_others():
         if 10 <= tick < 30:
             rows[1, 0] = math.nan if tick < 20 else -600
         for packet in sender.encode(tick, rows):
-            receiver.push(packet.data)
+            receiver.push(packet)
         shown = receiver.poses(tick)[:, 0]
         assert abs(shown[0] - 0.01 * tick) <= 0.006
         if 10 <= tick < 30:
@@ -222,11 +244,21 @@ def test_what_c_would_misread_is_refused():
     with pytest.raises(ValueError, match="contacts"):
         sender.encode(0, swing(0), np.zeros((1, 1), tactus.CONTACT))
     writer, packets = tactus.StreamWriter(scene), [p for tick in range(200) for p in sender.encode(tick, swing(tick))]
-    decoded = receiver.push(bytearray(packets[0].data))
-    with pytest.raises(TypeError):
-        receiver.push("packet")
-    with pytest.raises(ValueError, match="no bytes"):
-        writer.add(decoded)
+    decoded = receiver.push(1, bytearray(packets[0].data))
+    for wrong in ((packets[1].data,), (1,), (1, "packet"), (packets[1].data, 2), (packets[1], packets[1].data)):
+        with pytest.raises((TypeError, ctypes.ArgumentError)):
+            receiver.push(*wrong)
+    for number in (0, 1 << 62):
+        with pytest.raises(tactus.Error) as refused:
+            receiver.push(number, packets[1].data)
+        assert refused.value.rule == "R-API-5"
+    for take in (writer.add, receiver.push):
+        with pytest.raises(ValueError, match="no bytes"):
+            take(decoded)
+    writer.add(packets[0])
+    with pytest.raises(tactus.Error) as refused:
+        writer.add(packets[2])  # a file counts
+    assert refused.value.rule == "R-API-5"
 
 
 def test_a_few_bytes_do_not_ask_for_all_memory():

@@ -30,7 +30,7 @@ int main(void) {
     if (tactus_sender_encode(sender, tick, &truth, &encoded, &error)) return failed("encode", &error);
     for (size_t i = 0; i < encoded.packet_count; ++i, ++sent) {
       const tactus_packet* packet = &encoded.packets[i];
-      if (tactus_receiver_push(receiver, packet->data, packet->bytes, TACTUS_NO_CLOCK, NULL, &error))
+      if (tactus_receiver_push(receiver, packet->number, packet->data, packet->bytes, TACTUS_PACKET_TICK, NULL, &error))
         return failed("push", &error);
     }
     if (tactus_receiver_poses(receiver, tick, 0, 1, &shown, NULL, &error)) return failed("poses", &error);

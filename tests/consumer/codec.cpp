@@ -55,8 +55,8 @@ const char* send_and_receive() {
       if (tick == 2 && packet.layer == tactus::Layer::visual) {  // the network is slow: what is not touched can do without
         sender->forget_last(packet.substream);
         ++dropped;
-      } else if (const auto decoded = receiver->push(packet.bytes); decoded) {
-        sender->acknowledge(decoded->substream, decoded->sequence);
+      } else if (const auto decoded = receiver->push(packet.number, packet.bytes); decoded) {
+        sender->acknowledge(decoded->substream, decoded->number);
       } else {
         return advice(decoded.error()) == tactus::Advice::request_key ? "a key packet is needed" : "a packet is refused";
       }

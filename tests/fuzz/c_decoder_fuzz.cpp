@@ -86,7 +86,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   while (call(tactus_player_play, opened, std::numeric_limits<std::int64_t>::max(), &info)) {
     auto again = sized<tactus_packet_info>();
     require(info.offset + info.bytes <= size);
-    require(call(tactus_receiver_push, made, &file[info.offset], std::size_t{info.bytes}, std::int64_t{TACTUS_NO_CLOCK}, &again));
+    require(call(tactus_receiver_push, made, info.number, &file[info.offset], std::size_t{info.bytes},
+                 std::int64_t{TACTUS_PACKET_TICK}, &again));
     require(again.tick == info.tick && again.updates == info.updates && again.number == info.number);
     require(hash_of(made, info.substream) == hash_of(tactus_player_receiver(opened), info.substream));
     show(made, info.tick + 3);

@@ -150,10 +150,11 @@ class World {
 void deliver(tactus_sender* sender, const tactus_packet& packet, tactus_receiver* receiver, tactus_writer* writer) {
   const std::vector<std::uint8_t> bytes(packet.data, packet.data + packet.bytes);
   auto info = sized<tactus_packet_info>();
-  require(call(tactus_receiver_push, receiver, bytes.data(), bytes.size(), std::int64_t{TACTUS_NO_CLOCK}, &info));
-  require(info.tick == packet.tick && info.sequence == packet.sequence && info.updates == packet.updates);
-  require(call(tactus_writer_add, writer, packet.tick, bytes.data(), bytes.size(), packet.key));
-  (void)call(tactus_sender_acknowledge, sender, packet.substream, packet.sequence);
+  require(
+      call(tactus_receiver_push, receiver, packet.number, bytes.data(), bytes.size(), std::int64_t{TACTUS_PACKET_TICK}, &info));
+  require(info.tick == packet.tick && info.number == packet.number && info.updates == packet.updates);
+  require(call(tactus_writer_add, writer, packet.tick, packet.number, bytes.data(), bytes.size(), packet.key));
+  (void)call(tactus_sender_acknowledge, sender, packet.substream, packet.number);
 }
 
 }  // namespace
@@ -164,7 +165,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!scene) return 0;
   const Bounds bounds(in);
   auto o = filled<tactus_sender_options>();
-  change(in, o.reduction, o.baseline, o.first_sequence, o.key_interval, o.visual_fraction, o.haptic_fraction);
+  change(in, o.reduction, o.baseline, o.reserved, o.key_interval, o.visual_fraction, o.haptic_fraction);
   o.rigid = &bounds.rigid, o.deformable = &bounds.deformable, o.load = &bounds.load;
   tactus_sender* raw_sender = nullptr;
   if (!call(tactus_sender_create, scene.get(), &o, &raw_sender)) return 0;

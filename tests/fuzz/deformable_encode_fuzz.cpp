@@ -49,8 +49,8 @@ struct Ends {
       }
       agree = !fate.lose;
       if (fate.lose) continue;
-      require(receiver.push(packet.bytes).has_value());
-      if (fate.acknowledge) sender.acknowledge(packet.substream, packet.sequence);
+      require(receiver.push(packet.number, packet.bytes).has_value());
+      if (fate.acknowledge) sender.acknowledge(packet.substream, packet.number);
     }
     return true;
   }

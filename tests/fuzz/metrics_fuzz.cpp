@@ -69,7 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (packets) {
       if (!sender.held().empty() || watch.is_far(frame, receiver.replica()))
         return 0;  // the bounds are of what is held, or come in two steps
-      for (const Packet& packet : *packets) require(receiver.push(packet.bytes).has_value());
+      for (const Packet& packet : *packets) require(receiver.push(packet.number, packet.bytes).has_value());
       watch.look(frame, receiver.replica());
     }
     if (!reader->next(frame).value_or(false)) break;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any bytes as packets: two bytes of length, then a packet, again and again.
+/// Any bytes as packets: two bytes of length, then so many: two of the packet's number, and the packet. Again and again.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include <tactus/base/bytes.h>
@@ -24,15 +23,15 @@ inline std::uint64_t held(Receiver& receiver, std::size_t substream) {
   return hash.value();
 }
 
-/// A refused packet says which rule it breaks, and leaves no trace, not even in baselines (but for R-PKT-7).
-inline Result<DecodedPacket> push_packet(Receiver& receiver, std::span<const std::uint8_t> packet,
+/// A refused packet says which rule it breaks, and leaves no trace, not even in baselines.
+inline Result<DecodedPacket> push_packet(Receiver& receiver, std::uint64_t number, std::span<const std::uint8_t> packet,
                                          std::optional<std::int64_t> now = {}) {
   const auto part = split_substream(*receiver.scene(), packet);
   const std::size_t substream = part ? part->substream : 0;
   const std::uint64_t before = held(receiver, substream);
-  const auto decoded = receiver.push(packet, now);
+  const auto decoded = receiver.push(number, packet, now);
   if (decoded) {
-    require(part && decoded->substream == substream);
+    require(part && decoded->substream == substream && decoded->number == number);
     require(decoded->tick <= receiver.tick(substream));  // it may be reordered
   } else {
     require(decoded.error().rule[0] == 'R' && decoded.error().bit_offset <= 8 * packet.size());
@@ -41,21 +40,22 @@ inline Result<DecodedPacket> push_packet(Receiver& receiver, std::span<const std
   return decoded;
 }
 
+/// The highest 64 values are powers of 2: numbers far ahead, and two that are none.
+constexpr std::uint64_t number_of(std::uint64_t value) { return value < 0xffc0 ? value : std::uint64_t{1} << (value & 63); }
+
 /// Feeds the packets to a receiver; `check(packet)` looks at what an accepted one decoded to.
-///   twin  made like `receiver`, sees accepted packets and those that make a receiver forget
+///   twin  made like `receiver`, sees accepted packets alone
 template <class Check>
 void push_packets(std::span<const std::uint8_t> data, Receiver& receiver, Receiver& twin, Check check) {
-  for (std::size_t at = 0; at + 2 <= data.size();) {
-    const std::size_t length = std::min<std::size_t>(data[at] | (data[at + 1] & 3u) << 8, data.size() - at - 2);
-    const auto bytes = data.subspan(at + 2, length);
+  for (std::size_t at = 0; at + 4 <= data.size();) {
+    const std::size_t length = std::clamp<std::size_t>(data[at] | (data[at + 1] & 3u) << 8, 2, data.size() - at - 2);
+    const std::uint64_t number = number_of(data[at + 2] | std::uint64_t{data[at + 3]} << 8);
+    const auto bytes = data.subspan(at + 4, length - 2);
     const std::vector<std::uint8_t> packet(bytes.begin(), bytes.end());  // of its exact size, for the sanitizer
     at += 2 + length;
-    const auto decoded = push_packet(receiver, packet);
-    if (!decoded) {
-      if (std::string_view(decoded.error().rule) == "R-PKT-7") (void)twin.push(packet);  // it takes the baselines away
-      continue;
-    }
-    const auto same = twin.push(packet);
+    const auto decoded = push_packet(receiver, number, packet);
+    if (!decoded) continue;
+    const auto same = twin.push(number, packet);
     require(same && same->final_code == decoded->final_code);
     require(held(twin, decoded->substream) == held(receiver, decoded->substream));
     check(*decoded);

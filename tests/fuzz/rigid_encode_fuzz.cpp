@@ -88,7 +88,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     if (is_held) sample.velocity = sample.angular_velocity = {};
     else sample = next;
-    for (const Packet& packet : *packets) require(receiver.push(packet.bytes).has_value());
+    for (const Packet& packet : *packets) require(receiver.push(packet.number, packet.bytes).has_value());
     require(receiver.state_hash(0) == sender->state_hash(0));
     const std::uint8_t lod = receiver.replica().lod(0, tick);
     require(scene->interest.has_value() || lod == 0);

@@ -85,7 +85,7 @@ void devices(ByteReader& in) {
     const Vec3 displacement = sample.position - device_at(receiver, tick, 0).position;
     const auto packets = sender->encode(tick, truth.of(tick, sample, touched));
     require(packets.has_value());
-    for (const Packet& packet : *packets) require(receiver.push(packet.bytes).has_value());
+    for (const Packet& packet : *packets) require(receiver.push(packet.number, packet.bytes).has_value());
     const bool is_held = std::ranges::any_of(sender->held(), [](const HeldPart& h) { return h.part == TruthPart::object; });
     const bool is_near = std::abs(displacement.x) < 511 && std::abs(displacement.y) < 511 &&
                          std::abs(displacement.z) < 511;  // what an update can name

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any bytes as a stream file: a receiver, fed to the end, without a clock and with one that runs late; a player; seek, and again.
+/// Any bytes as a stream file: a receiver, fed to the end, that shows packets in their ticks and one that shows them late; a player; seek, and again.
 #include <limits>
 #include <vector>
 
@@ -19,9 +19,9 @@ struct Heard {
 };
 
 /// Records until the end or the first broken one.
-Heard listen(StreamFileReader& reader, bool has_clock) {
+Heard listen(StreamFileReader& reader, bool is_late) {
   const Interpolation at_once = reader.scene()->is_smoothed ? Interpolation::none : Interpolation::linear;
-  const Interpolation interpolation = has_clock ? Interpolation::playout : at_once;
+  const Interpolation interpolation = is_late ? Interpolation::playout : at_once;
   const ReceiverOptions options{.replica = {.interpolation = interpolation}, .limits = kLimits};
   auto receiver = Receiver::create(reader.scene(), options).value();
   Heard out;
@@ -31,8 +31,8 @@ Heard listen(StreamFileReader& reader, bool has_clock) {
     require(reader.position() >= before && (record || record.error().rule[0] == 'R'));
     if (!record || !*record) return out;
     const std::int64_t tick = (*record)->tick;
-    const auto now = has_clock ? std::optional(tick + kDelay) : std::nullopt;
-    const auto packet = push_packet(receiver, (*record)->bytes, now);
+    const auto now = is_late ? std::optional(tick + kDelay) : std::nullopt;
+    const auto packet = push_packet(receiver, (*record)->number, (*record)->bytes, now);
     sound = sound && packet && packet->tick == tick;
     if (sound) ++out.accepted;
     if (!packet) continue;

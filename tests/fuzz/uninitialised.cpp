@@ -14,6 +14,6 @@ int main() {
   if (!receiver) return 0;
   constexpr std::size_t kSize = 16;
   const std::unique_ptr<std::uint8_t[]> packet(new std::uint8_t[kSize]);
-  (void)receiver->push({packet.get(), kSize});
+  (void)receiver->push(1, {packet.get(), kSize});
   return 0;
 }

@@ -118,7 +118,7 @@ bool run(const Case& c) {
     if (!packets) return false;
     for (const Packet& packet : *packets) {
       for (const std::uint8_t byte : packet.bytes) stream.add_byte(byte);
-      const auto decoded = receiver->push(packet.bytes);
+      const auto decoded = receiver->push(packet.number, packet.bytes);
       if (!decoded) return false;
       stream.add32(decoded->final_range);
       stream.add32(decoded->final_code);

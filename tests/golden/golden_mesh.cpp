@@ -141,7 +141,7 @@ bool run(const char* name, const Setting& setting) {
     if (!packets) return false;
     for (const Packet& packet : *packets) {
       for (const std::uint8_t b : packet.bytes) stream.add_byte(b);
-      const auto decoded = receiver->push(packet.bytes);
+      const auto decoded = receiver->push(packet.number, packet.bytes);
       if (!decoded) return false;
       stream.add32(decoded->final_range);
       stream.add32(decoded->final_code);

@@ -97,7 +97,7 @@ def stream_record(kind, payload):
     return data + zlib.crc32(data).to_bytes(4, "little")
 
 
-def rigid_key_packet(sequence, tick):
+def rigid_key_packet(tick):
     """One object at its initial state."""
     models, encoder = Models("rigid-start-models.csv"), RangeEncoder()
     encoder.bit(models["KEY"][1], 1)
@@ -108,15 +108,15 @@ def rigid_key_packet(sequence, tick):
         for kind, later in (("POSE", 4), ("MOTION", 5)):
             for axis in range(3):
                 encoder.signed(models[f"{kind}[{k}][{later if axis else 0}]"], 0)
-    return sequence.to_bytes(2, "little") + encoder.finish()
+    return encoder.finish()
 
 
 def far_tick(folder):
     """Some 130 lawful bytes that make a replica of 2^32 ticks."""
     header = bytes.fromhex(
-        "89544354010000002c000000e80300001611140cd0070101013f016f00000000000000000000000000000040000000000000000000000000ee509d92")
-    near = stream_record(1, b"\x01" + rigid_key_packet(1, 1))
-    far = stream_record(1, b"\xef\xff\xff\xff\x0f" + rigid_key_packet(2, 0xfffffff0))
+        "89544354020000002c000000e80300001611140cd0070101013f016f00000000000000000000000000000040000000000000000000000000f954c828")
+    near = stream_record(1, b"\x01" + rigid_key_packet(1))
+    far = stream_record(1, b"\xef\xff\xff\xff\x0f" + rigid_key_packet(0xfffffff0))
     index = stream_record(2, b"\x02\x01\x3c\xef\xff\xff\xff\x0f" + bytes([len(near)]))
     end = stream_record(3, (len(header) + len(near) + len(far)).to_bytes(8, "little"))
     (folder / "b.tct").write_bytes(header + near + far + index + end)
@@ -245,7 +245,7 @@ def many_polygons(folder):
 
 def long_header(folder):
     """A stream header that says it is 64 MiB, and one that is."""
-    head = b"\x89TCT\x01\0\0\0"
+    head = b"\x89TCT\x02\0\0\0"
     (folder / "a.tct").write_bytes(head + struct.pack("<I", 1 << 26))
     body = bytes(1 << 20)
     (folder / "b.tct").write_bytes(head + struct.pack("<I", len(body)) + body + struct.pack("<I", zlib.crc32(head + struct.pack("<I", len(body)) + body)))

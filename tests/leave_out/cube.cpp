@@ -13,7 +13,7 @@ int main(int, char** arguments) {
   auto receiver = tactus::Receiver::create(*scene);
   if (!receiver) return 1;
   const std::span packet(reinterpret_cast<const std::uint8_t*>(arguments), 8);  // as if it had come from a network
-  const bool is_packet = receiver->push(packet).has_value();
+  const bool is_packet = receiver->push(1, packet).has_value();
   const tactus::RigidPose shown = receiver->replica().pose(0, 1);
   std::printf("%d %d\n", static_cast<int>(is_packet), shown.position[0]);
   return 0;

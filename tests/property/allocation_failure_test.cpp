@@ -119,7 +119,7 @@ std::vector<char> written_file(std::uint64_t failing) {
   };
   for (std::int64_t tick = 0; tick < 20; ++tick) {
     const std::vector<std::uint8_t> packet(static_cast<std::size_t>(10 * tick), std::uint8_t{7});
-    insist([&] { return writer.add(tick, packet, tick % 2 == 0); });
+    insist([&] { return writer.add(tick, static_cast<std::uint64_t>(tick + 1), packet, tick % 2 == 0); });
   }
   insist([&] { return writer.finish(); });
   return sink.bytes();

@@ -64,9 +64,9 @@ std::uint64_t state_hash(const Receiver& receiver) {
 }
 
 /// Null, or what went wrong with this packet.
-const char* survive_packet(Receiver& receiver, std::span<const std::uint8_t> packet) {
+const char* survive_packet(Receiver& receiver, const FilePacket& packet) {
   const std::uint64_t before = state_hash(receiver);
-  const auto decoded = receiver.push(packet);
+  const auto decoded = receiver.push(packet.number, packet.bytes);
   if (decoded) return nullptr;
   if (!has_rule(decoded.error())) return "a refused packet without a rule";
   return state_hash(receiver) == before ? nullptr : "a refused packet changes the state";
@@ -94,7 +94,7 @@ const char* survive(std::span<const std::uint8_t> bytes) {
     if (testing::allocated_bytes() != ready) return "reading allocates";
     if (!packet) return has_rule(packet.error()) ? nullptr : "a refused record without a rule";
     if (!*packet) return nullptr;
-    const char* wrong = survive_packet(*receiver, (*packet)->bytes);
+    const char* wrong = survive_packet(*receiver, **packet);
     if (testing::allocated_bytes() != ready) return "decoding allocates";
     if (wrong) return wrong;
   }
@@ -193,7 +193,7 @@ TEST(Hostile, LimitsAreKept) {
   EXPECT_STREQ(Receiver::create(scene, {.replica = {}, .limits = {.objects = 1}}).error().rule, "R-STR-14");
   EXPECT_STREQ(Receiver::create(scene, {.replica = {}, .limits = {.state_bytes = 300}}).error().rule, "R-STR-18");
   auto receiver = Receiver::create(scene, {.replica = {}, .limits = {.packet_bytes = 8}}).value();
-  const auto too_long = receiver.push(Bytes(9, 1));
+  const auto too_long = receiver.push(1, Bytes(9, 1));
   ASSERT_FALSE(too_long);
   EXPECT_EQ(too_long.error().code, Errc::limit_exceeded);
   EXPECT_STREQ(too_long.error().rule, "R-PKT-1");

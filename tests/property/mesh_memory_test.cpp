@@ -29,7 +29,8 @@ std::size_t watch(const Bytes& bytes) {
   const Scene& scene = *reader->scene();
   auto receiver = Receiver::create(reader->scene()).value();
   const std::uint64_t ready = testing::allocated_bytes();
-  for (auto packet = reader->next(); packet && *packet; packet = reader->next()) (void)receiver.push((*packet)->bytes);
+  for (auto packet = reader->next(); packet && *packet; packet = reader->next())
+    (void)receiver.push((*packet)->number, (*packet)->bytes);
   const std::uint64_t done = testing::allocated_bytes();
   EXPECT_LE(ready - start, testing::earned(static_cast<std::size_t>(reader->header_bytes()), scene));
   EXPECT_EQ(done, ready) << "packets allocate";

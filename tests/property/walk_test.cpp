@@ -48,7 +48,7 @@ Outcome walk(const SenderOptions& options, std::uint64_t seed) {
       out.bytes.insert(out.bytes.end(), packet.bytes.begin(), packet.bytes.end());
       ++out.packets;
       const std::vector<std::uint8_t> exact(packet.bytes.begin(), packet.bytes.end());
-      if (!receiver.push(exact) || receiver.state_hash(0) != sender.state_hash(0)) ++out.differing_states;
+      if (!receiver.push(packet.number, exact) || receiver.state_hash(0) != sender.state_hash(0)) ++out.differing_states;
     }
     for (std::uint32_t i = 0; i < kObjects; ++i) {
       const Pose& truth = samples[i].pose;

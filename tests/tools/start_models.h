@@ -21,6 +21,22 @@ namespace tactus {
 /// How often each model coded a 0 and a 1.
 using Counts = std::vector<std::array<double, 2>>;
 
+/// Counts the bits of symbols that are known.
+class CountingEncoder : public detail::SymbolCoder<CountingEncoder> {
+ public:
+  CountingEncoder(const BitModel* first, Counts& counts) : first_(first), counts_(counts) {}
+
+  bool bit(BitModel& model, std::uint32_t value) noexcept {
+    counts_[static_cast<std::size_t>(&model - first_)][value != 0 ? 1 : 0] += 1;
+    return value != 0;
+  }
+  std::uint32_t raw(unsigned, std::uint32_t value) noexcept { return value; }
+
+ private:
+  const BitModel* first_;
+  Counts& counts_;
+};
+
 /// `Models` is a struct of nothing but BitModel.
 template <class Models>
 Counts no_counts() {
@@ -40,6 +56,7 @@ class CountingDecoder : public detail::SymbolCoder<CountingDecoder> {
     return value;
   }
   std::uint32_t raw(unsigned count, std::uint32_t) noexcept { return decoder_.raw(count); }
+  CountingEncoder again() noexcept { return {first_, counts_}; }  ///< to count more symbols with the same models
 
  private:
   RangeDecoder decoder_;
@@ -87,6 +104,11 @@ class Table {
     }
   }
   void magnitude(const std::string& name) { tree(name, 15); }
+  /// One model whose start is chosen: no stream file codes it.
+  void chosen(const std::string& name, long zero, int rate) {
+    std::printf("%s[1],%ld,%d\n", name.c_str(), zero, rate);
+    ++at_;
+  }
   /// Every model has its row.
   bool complete() const { return at_ == counts_.size(); }
 

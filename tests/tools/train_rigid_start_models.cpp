@@ -12,7 +12,7 @@ using namespace tactus;
 /// False: the packet names an object that is not there.
 bool count_packet(std::span<const std::uint8_t> packet, const Scene& scene, Counts& counts) {
   RigidModels models = start_models();
-  CountingDecoder coder(packet.subspan(2), models, counts);
+  CountingDecoder coder(packet, models, counts);
   RigidHead head;
   code_head(coder, models, scene, head);
   const auto moving = scene.moving();
@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
     if (!scene.deformables.empty()) return false;
     Counts counts = no_counts<RigidModels>();
     for (const auto& packet : packets)
-      if (packet.size() < 2 || !count_packet(packet, scene, counts)) return false;
+      if (!count_packet(packet, scene, counts)) return false;
     for (std::size_t m = 0; m < total.size(); ++m)
       for (std::size_t bit = 0; bit < 2; ++bit)
         total[m][bit] += packets.empty() ? 0 : 1000 * counts[m][bit] / static_cast<double>(packets.size());

@@ -48,7 +48,7 @@ TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
         const auto sent = sender.encode(tick, {samples, contacts});
         if (!sent) return;
         for (const Packet& packet : *sent) {
-          if (!receiver.push(packet.bytes, tick)) return;
+          if (!receiver.push(packet.number, packet.bytes, tick)) return;
           ++packets;
         }
         hash ^= receiver.replica().pose_hash(tick);
@@ -91,11 +91,11 @@ TEST(Allocation, ASceneOfSeveralSubstreamsAllocatesNothing) {
         if (!sent) return;
         for (const Packet& packet : *sent) {
           std::ranges::copy(packet.bytes, damaged.begin());
-          (void)receiver.push(std::span(damaged).first(packet.bytes.size() + 9), tick);
+          (void)receiver.push(packet.number, std::span(damaged).first(packet.bytes.size() + 9), tick);
           if (tick % 7 == 3) {
             sender.forget_last(packet.substream);
-          } else if (receiver.push(packet.bytes, tick)) {
-            sender.acknowledge(packet.substream, packet.sequence);
+          } else if (receiver.push(packet.number, packet.bytes, tick)) {
+            sender.acknowledge(packet.substream, packet.number);
             ++decoded;
           }
         }
@@ -152,9 +152,9 @@ TEST(Allocation, RefusedInputAllocatesNothing) {
   std::mt19937 random(9);
   std::uint64_t refused = 0;
   const std::uint64_t counted = count_of([&] {
-    for (int run = 0; run < 2000; ++run) {
+    for (std::uint64_t number = 1; number <= 2000; ++number) {
       for (auto& b : noise) b = static_cast<std::uint8_t>(random());
-      refused += receiver.push(noise) ? 0u : 1u;
+      refused += receiver.push(number, noise) ? 0u : 1u;
     }
   });
   EXPECT_EQ(counted, 0u);

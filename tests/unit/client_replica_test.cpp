@@ -181,7 +181,6 @@ TEST(ClientReplica, OptionsOutsideTheirRangeAreRefused) {
 struct Arrival {
   std::uint64_t number;
   std::int64_t tick;
-  bool restarts = false;
 };
 
 class PlayoutReplica {
@@ -194,7 +193,6 @@ class PlayoutReplica {
     DecodedPacket packet;
     packet.number = arrival.number;
     packet.tick = arrival.tick;
-    packet.restarts = arrival.restarts;
     packet.updates = {&named, 1};
     replica_.apply(packet, {arrival.tick, PagedArray<RigidState>(1, 1, [&](std::size_t) { return state; })}, now);
   }
@@ -240,15 +238,6 @@ TEST(ClientPlayout, OrderOfArrivalDoesNotMatter) {
   PlayoutReplica shuffled;
   for (const Arrival& a : arrivals) shuffled.take(a);
   for (std::int64_t tick = 0; tick < 1000; ++tick) EXPECT_EQ(in_order.shown(tick), shuffled.shown(tick)) << tick;
-}
-
-TEST(ClientPlayout, ARestartForgetsWhatWasKnown) {
-  PlayoutReplica client;
-  client.take({1, 400});
-  client.take({2, 450});
-  client.take({40000, 30, true});
-  EXPECT_EQ(client.shown(20), RigidPose{});
-  EXPECT_EQ(client.shown(460), client.reckoned(30, 460));
 }
 
 TEST(ClientReplicaOrder, AReorderedUpdateIsNotShown) {

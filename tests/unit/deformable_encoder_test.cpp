@@ -331,11 +331,11 @@ TEST(DeformableEncoder, KeyPacketsBuildOnTheInitialState) {
   for (std::int64_t k = 0; k < 240; ++k) {
     const Packet packet = testing::only(ends.encode(k, {sheet.frame(k).displacements, {}}));
     if (packet.bytes.empty()) continue;
-    ASSERT_TRUE(ends.receiver.push(packet.bytes));
+    ASSERT_TRUE(ends.receiver.push(packet.number, packet.bytes));
     if (!packet.key) continue;
     ++keys;
     auto fresh = Receiver::create(scene).value();
-    ASSERT_TRUE(fresh.push(packet.bytes));
+    ASSERT_TRUE(fresh.push(packet.number, packet.bytes));
     EXPECT_EQ(fresh.state_hash(1), ends.receiver.state_hash(1));
   }
   EXPECT_GE(keys, 4U);
@@ -357,7 +357,7 @@ TEST(DeformableEncoder, AllocatesNothingAfterSetUp) {
     for (std::int64_t k = 0; k < 120; ++k) {
       const auto packets = ends.encode(k, frames[static_cast<std::size_t>(k)]);
       if (!packets) break;
-      for (const Packet& packet : *packets) decoded += ends.receiver.push(packet.bytes).has_value() ? 1U : 0U;
+      for (const Packet& packet : *packets) decoded += ends.receiver.push(packet.number, packet.bytes).has_value() ? 1U : 0U;
       (void)ends.shown(k);
     }
     EXPECT_EQ(testing::allocated_bytes(), before);

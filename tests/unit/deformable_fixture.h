@@ -178,10 +178,10 @@ class SheetEnds {
     agree(tick);
   }
   void deliver(const Packet& packet, std::int64_t tick) {
-    const auto decoded = receiver.push(packet.bytes);
+    const auto decoded = receiver.push(packet.number, packet.bytes);
     ASSERT_TRUE(decoded) << decoded.error().rule << " at tick " << tick;
     ASSERT_EQ(decoded->substream, packet.substream);
-    ASSERT_EQ(decoded->sequence, packet.sequence);
+    ASSERT_EQ(decoded->number, packet.number);
     ASSERT_EQ(decoded->tick, tick);
     ASSERT_EQ(decoded->key, packet.key);
     ASSERT_EQ(decoded->vertices, packet.updates);

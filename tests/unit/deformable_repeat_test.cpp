@@ -43,8 +43,8 @@ class MovedOnce {
   }
   void deliver(const Packet& packet) {
     ASSERT_FALSE(packet.bytes.empty());
-    ASSERT_TRUE(receiver->push(packet.bytes));
-    sender->acknowledge(packet.substream, packet.sequence);
+    ASSERT_TRUE(receiver->push(packet.number, packet.bytes));
+    sender->acknowledge(packet.substream, packet.number);
     EXPECT_EQ(sender->state_hash(1), receiver->state_hash(1));
   }
   std::int64_t next_tick() const { return tick_; }

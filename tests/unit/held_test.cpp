@@ -99,7 +99,7 @@ TEST(Held, OneBadObjectDoesNotStopTheOthers) {
           if (!is_bad || tick == 100) moved.push_back(4);  // what it is does not change any more
           Truth truth{.objects = world.samples};
           if (names_moved) truth.moved = moved;
-          for (const Packet& packet : all(sender.encode(tick, truth))) ASSERT_TRUE(receiver.push(packet.bytes));
+          for (const Packet& packet : all(sender.encode(tick, truth))) ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
           ASSERT_EQ(sender.held().size(), is_bad ? 1u : 0u) << wrong.rule << " tick " << tick;
           if (is_bad) {
             const HeldPart& held = sender.held()[0];
@@ -138,7 +138,7 @@ TEST(Held, RestsThoughItWasAccelerated) {
     RigidSample sample{{{9 * t - 10 * t * t, 0, 0}, {}}, {9 - 20 * t, 0, 0}, {}};
     if (tick >= 200) sample.pose.position.x = kNan;
     for (const Packet& packet : all(sender.encode(tick, {.objects = {&sample, 1}}))) {
-      ASSERT_TRUE(receiver.push(packet.bytes));
+      ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
       if (tick < 200) continue;
       ++sent;
       EXPECT_EQ(receiver.object(0).velocity, Vec3i{}) << tick;
@@ -156,7 +156,8 @@ TEST(Held, FromTheFirstTickOnWhereTheSceneDeclaresIt) {
   for (std::int64_t tick = 0; tick < 60; ++tick) {
     samples[0].pose.position.x = 0.01 * static_cast<double>(tick);
     samples[1].pose.position.x = tick < 40 ? kNan : 0.3;
-    for (const Packet& packet : all(sender.encode(tick, {.objects = samples}))) ASSERT_TRUE(receiver.push(packet.bytes));
+    for (const Packet& packet : all(sender.encode(tick, {.objects = samples})))
+      ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
     const Vec3 shown = to_pose(receiver.replica().pose(1, tick), scene->grid.position).position;
     if (tick < 40) {
       EXPECT_EQ(shown, home.position);
@@ -280,7 +281,7 @@ TEST(Held, ShapesAndLoadsAreTheLastGoodOnes) {
     const Vec3 push{1 + 0.01 * static_cast<double>(tick), 0, 0};
     ObjectLoad loads[2]{{{1, 0, 0}, {}, {&push, 1}}, {{is_bad ? kInfinite : 2, 0, 0}, {}, {&push, 1}}};
     const Truth truth{.objects = bodies, .contacts = {}, .deformables = shapes, .loads = loads};
-    for (const Packet& packet : all(sender.encode(tick, truth))) ASSERT_TRUE(receiver.push(packet.bytes));
+    for (const Packet& packet : all(sender.encode(tick, truth))) ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
     ASSERT_EQ(sender.held().size(), is_bad ? 2u : 0u) << tick;
     if (is_bad) {
       EXPECT_EQ(name_of(*scene, sender.held()[0]), "left");

@@ -185,9 +185,9 @@ Judged judge(Baseline baseline, bool is_smoothed, bool looks, std::uint64_t seed
     const auto packets = sender.encode(tick, of.truth());
     EXPECT_TRUE(packets);
     for (const Packet& packet : *packets) {
-      const auto decoded = receiver.push(packet.bytes);
+      const auto decoded = receiver.push(packet.number, packet.bytes);
       EXPECT_TRUE(decoded);
-      if (tick % 40 == 0) sender.acknowledge(0, packet.sequence);
+      if (tick % 40 == 0) sender.acknowledge(0, packet.number);
       ++out.packets, out.bytes += packet.bytes.size(), out.updates += packet.updates;
     }
     for (std::uint32_t i = 0; i < kObjects; ++i) {
@@ -237,7 +237,7 @@ TEST(LevelsOfDetail, AKeyPacketNamesWhatIsOfInterestAlone) {
   const auto key = sender.encode(3000, of.truth());
   ASSERT_EQ(testing::all(key).size(), 1u);
   Receiver late = Receiver::create(scene).value();
-  const auto decoded = late.push(key->front().bytes);
+  const auto decoded = late.push(key->front().number, key->front().bytes);
   ASSERT_TRUE(decoded);
   std::size_t shown = 0;
   for (std::uint32_t i = 0; i < 140; ++i) {
@@ -266,7 +266,7 @@ TEST(LevelsOfDetail, WhatEntersIsNotSmoothedFromWhatNotEverybodyHasShown) {
     for (const Packet& packet : testing::all(packets)) {
       has_key = has_key || (tick == 900 && packet.key);
       if (!has_key) continue;
-      ASSERT_TRUE(late.push(packet.bytes)) << tick;
+      ASSERT_TRUE(late.push(packet.number, packet.bytes)) << tick;
     }
     if (!has_key || late.replica().lod(0, tick) == kOutOfInterest) continue;
     is_seen = true;

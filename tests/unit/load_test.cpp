@@ -77,7 +77,7 @@ TEST(Loads, StayWithinTheirBoundsInAFewPackets) {
   std::size_t packets = 0, bytes = 0;
   for (std::int64_t tick = 0; tick < 3000; ++tick) {
     for (const Packet& packet : testing::all(sender.encode(tick, world.step(tick)))) {
-      const auto decoded = receiver.push(packet.bytes);
+      const auto decoded = receiver.push(packet.number, packet.bytes);
       ASSERT_TRUE(decoded) << decoded.error().rule;
       EXPECT_EQ(sender.state_hash(packet.substream), receiver.state_hash(packet.substream));
       if (packet.substream != load_substream(*scene)) continue;
@@ -99,7 +99,7 @@ TEST(Loads, EveryPacketThatArrivesCanBeUsedWhenBaselinesAreAcknowledged) {
   auto receiver = Receiver::create(scene).value();
   Pushed world;
   std::mt19937_64 random(7);
-  std::deque<std::pair<std::int64_t, std::uint16_t>> acknowledgements;
+  std::deque<std::pair<std::int64_t, std::uint64_t>> acknowledgements;
   std::size_t lost = 0, over = 0;
   for (std::int64_t tick = 0; tick < 6000; ++tick) {
     while (!acknowledgements.empty() && acknowledgements.front().first <= tick) {
@@ -111,8 +111,8 @@ TEST(Loads, EveryPacketThatArrivesCanBeUsedWhenBaselinesAreAcknowledged) {
         ++lost;
         continue;
       }
-      ASSERT_TRUE(receiver.push(packet.bytes));
-      if (packet.substream == load_substream(*scene)) acknowledgements.emplace_back(tick + 40, packet.sequence);
+      ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
+      if (packet.substream == load_substream(*scene)) acknowledgements.emplace_back(tick + 40, packet.number);
     }
     if (tick >= 100) over += worst(receiver, world, tick) > 1 + 1e-9;
   }
@@ -120,7 +120,7 @@ TEST(Loads, EveryPacketThatArrivesCanBeUsedWhenBaselinesAreAcknowledged) {
   EXPECT_LT(over, 900u) << "of 5900 ticks at 30 % loss";
   for (std::int64_t tick = 6000; tick < 6400; ++tick) {  // then all arrives, and nothing changes
     for (const Packet& packet : testing::all(sender.encode(tick, {.objects = world.objects_, .loads = world.step(5999).loads})))
-      ASSERT_TRUE(receiver.push(packet.bytes));
+      ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
   }
   EXPECT_LE(worst(receiver, world, 6399), 1 + 1e-9) << "what was lost is sent again";
 }
@@ -147,7 +147,7 @@ TEST(Loads, OfAPastTickAreThoseOfItsState) {
   for (std::int64_t tick = 0; tick < 50; tick += 10) {
     std::vector<ObjectLoad> loads(3, ObjectLoad{{static_cast<double>(tick), 0, 0}, {}, nobody});
     for (const Packet& packet : testing::all(sender.encode(tick, {.objects = still, .loads = loads})))
-      ASSERT_TRUE(receiver.push(packet.bytes));
+      ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
   }
   EXPECT_NEAR(to_force(receiver.load(0, 25)[kExternal], 10).x, 20, 2);
   EXPECT_NEAR(to_force(receiver.load(2, 1000)[kExternal], 10).x, 40, 4);

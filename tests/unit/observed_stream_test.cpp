@@ -111,11 +111,12 @@ TEST_F(ObservedStreamTest, WhoBeginsLateHasTheServersStates) {
     has_begun = has_begun || batch["key"];
     if (!has_begun) continue;
     const Bytes stream = from_base64(batch["stream"]);
-    const auto offsets = column(batch["packets"]["offsets"]), sizes = column(batch["packets"]["sizes"]);
+    const auto offsets = column(batch["packets"]["offsets"]), sizes = column(batch["packets"]["sizes"]),
+               numbers = column(batch["packets"]["numbers"]);
     for (std::size_t i = 0; i < offsets.size(); ++i) {
       const auto at = static_cast<std::size_t>(offsets[i]), size = static_cast<std::size_t>(sizes[i]);
       ASSERT_LE(at + size, stream.size());
-      ASSERT_TRUE(late.push(std::span(stream).subspan(at, size)));
+      ASSERT_TRUE(late.push(static_cast<std::uint64_t>(numbers[i]), std::span(stream).subspan(at, size)));
     }
     if (!batch["key"]) continue;
     EXPECT_EQ(batch["hashes"], nlohmann::json::array({fmt::format("{:016x}", late.state_hash(0))}));

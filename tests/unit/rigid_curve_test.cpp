@@ -250,7 +250,7 @@ TEST(Smoothing, BoundsHoldMeanwhileAndStepsAreSmall) {
       const Packet packet = only(sender.encode(tick, {.objects = {&truth, 1}}));
       if (!packet.bytes.empty()) {
         ++packets;
-        ASSERT_TRUE(receiver.push(packet.bytes));
+        ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
       }
       const Pose shown = to_pose(receiver.replica().pose(0, tick), scene->grid.position);
       ASSERT_LE(norm(shown.position - truth.pose.position), triggers.visual_position) << tick;
@@ -302,12 +302,12 @@ TEST(Smoothing, KeyPacketsAreNotSmoothed) {
     const RigidSample truth = motion.step(1e-3);
     const Packet packet = only(sender.encode(tick, {.objects = {&truth, 1}}));
     if (packet.bytes.empty()) continue;
-    ASSERT_TRUE(receiver.push(packet.bytes));
+    ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
     smoothed += receiver.object(0).smoothing_exp > 0;
     if (!packet.key) continue;
     ++keys;
     auto late = Receiver::create(smoothed_scene()).value();
-    ASSERT_TRUE(late.push(packet.bytes));
+    ASSERT_TRUE(late.push(packet.number, packet.bytes));
     ASSERT_EQ(late.object(0).smoothing_exp, 0);
     const RigidPose shown = late.replica().pose(0, tick);
     ASSERT_EQ(shown.position, late.object(0).position);
@@ -331,14 +331,14 @@ TEST(Smoothing, PlayoutShowsThePathWhateverTheOrderOfArrival) {
   auto direct = Receiver::create(scene).value();
   testing::Motion motion(8);
   std::vector<RigidPose> shown;
-  std::vector<std::vector<std::uint8_t>> packets;
+  std::vector<std::pair<std::uint64_t, std::vector<std::uint8_t>>> packets;  // and their numbers
   for (std::int64_t tick = 0; packets.size() < 60; ++tick) {
     const RigidSample truth = motion.step(1e-3);
     const Packet packet = only(sender.encode(tick, {.objects = {&truth, 1}}));
     if (!packet.bytes.empty()) {
-      ASSERT_TRUE(direct.push(packet.bytes));
-      if (packets.empty()) sender.acknowledge(0, packet.sequence);
-      packets.emplace_back(packet.bytes.begin(), packet.bytes.end());
+      ASSERT_TRUE(direct.push(packet.number, packet.bytes));
+      if (packets.empty()) sender.acknowledge(0, packet.number);
+      packets.emplace_back(packet.number, std::vector<std::uint8_t>(packet.bytes.begin(), packet.bytes.end()));
     }
     shown.push_back(direct.replica().pose(0, tick));
   }
@@ -346,7 +346,7 @@ TEST(Smoothing, PlayoutShowsThePathWhateverTheOrderOfArrival) {
   for (int round = 0; round < 10; ++round) {
     std::shuffle(packets.begin() + 1, packets.end(), random);
     auto late = Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}, .limits = {}}).value();
-    for (const auto& packet : packets) ASSERT_TRUE(late.push(packet)) << round;
+    for (const auto& [number, bytes] : packets) ASSERT_TRUE(late.push(number, bytes)) << round;
     for (std::size_t tick = 0; tick < shown.size(); ++tick)
       ASSERT_EQ(late.replica().pose(0, static_cast<std::int64_t>(tick)), shown[tick]) << round << " tick " << tick;
   }

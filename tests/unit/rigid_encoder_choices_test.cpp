@@ -256,7 +256,7 @@ TEST(LookAheadVelocity, MotionWithoutAccelerationIsSentAsWithoutIt) {
       const RigidSample sample = steady(tick);
       const Packet packet = only(sender.encode(tick, {.objects = {&sample, 1}}));
       if (packet.bytes.empty()) continue;
-      EXPECT_TRUE(receiver.push(packet.bytes));
+      EXPECT_TRUE(receiver.push(packet.number, packet.bytes));
       out.push_back(receiver.object(0).velocity);
     }
     return out;

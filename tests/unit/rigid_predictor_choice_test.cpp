@@ -158,7 +158,7 @@ Outcome send(const SharedScene& scene, const Toss& toss) {
     const Packet packet = testing::only(sender.encode(tick, {.objects = {&sample, 1}}));
     if (!packet.bytes.empty()) {
       ++out.packets;
-      EXPECT_TRUE(receiver.push(packet.bytes));
+      EXPECT_TRUE(receiver.push(packet.number, packet.bytes));
       EXPECT_EQ(sender.state_hash(0), receiver.state_hash(0));
     }
     const Pose shown = to_pose(receiver.replica().pose(0, tick), scene->grid.position);
@@ -184,7 +184,7 @@ TEST(PredictorChoice, AnObjectOnARailStaysOnIt) {
     RigidSample sample = Toss().at(tick);
     sample.pose.position.z = sample.velocity.z = 0;
     for (const Packet& packet : testing::all(sender.encode(tick, {.objects = {&sample, 1}})))
-      ASSERT_TRUE(receiver.push(packet.bytes));
+      ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
     ASSERT_EQ(receiver.replica().pose(0, tick).position[2], 0) << tick;
   }
 }

@@ -89,7 +89,7 @@ SenderOptions options_of(Baseline baseline, double heartbeat) {
 struct Pair {
   Sender sharing, alone;
   std::uint64_t seed;
-  std::vector<std::uint16_t> unheard{};
+  std::vector<std::uint64_t> unheard{};
   std::uint64_t number = 1;
 };
 
@@ -122,14 +122,14 @@ void compare(bool is_smoothed, bool names, bool looks = false) {
         const std::vector<Vec3> viewpoints{{0.3 * std::sin(turn), 0.3 * std::cos(turn), 0}};
         pair.sharing.set_viewpoints(viewpoints), pair.alone.set_viewpoints(viewpoints);
       }
-      const auto sent = pair.sharing.encode_numbered(pair.number, tick, yard.truth(names));
-      ASSERT_TRUE(are_equal(sent, pair.alone.encode_numbered(pair.number, tick, yard.truth(false)))) << tick << ' ' << pair.seed;
-      for (const Packet& packet : *sent) pair.unheard.push_back(packet.sequence), ++packets;
+      const auto sent = pair.sharing.encode(tick, yard.truth(names), pair.number);
+      ASSERT_TRUE(are_equal(sent, pair.alone.encode(tick, yard.truth(false), pair.number))) << tick << ' ' << pair.seed;
+      for (const Packet& packet : *sent) pair.unheard.push_back(packet.number), ++packets;
       ASSERT_EQ(pair.sharing.state_hash(0), pair.alone.state_hash(0));
       pair.number += 1 + (random() % 8 == 0 ? pair.seed % 3 : 0);  // datagrams without packets
       if (pair.seed >= 5 && tick % 30 == 0) {
-        for (const std::uint16_t sequence : pair.unheard)
-          if (random() % 5 != 0) pair.sharing.acknowledge(0, sequence), pair.alone.acknowledge(0, sequence);
+        for (const std::uint64_t number : pair.unheard)
+          if (random() % 5 != 0) pair.sharing.acknowledge(0, number), pair.alone.acknowledge(0, number);
         pair.unheard.clear();
         const LinkState link{.ack_timeout = 40, .loss = tick % 900 < 300 ? 0.0 : 0.2};
         pair.sharing.set_link(link), pair.alone.set_link(link);

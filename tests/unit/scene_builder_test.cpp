@@ -297,7 +297,8 @@ TEST(SceneBuilder, ASceneIsSharedNotCopied) {
   EXPECT_FALSE(watch.expired());
   RigidSample sample;
   sample.pose.position.x = 1;
-  for (const Packet& packet : testing::all(sender.encode(0, {{&sample, 1}}))) EXPECT_TRUE(receiver.push(packet.bytes));
+  for (const Packet& packet : testing::all(sender.encode(0, {{&sample, 1}})))
+    EXPECT_TRUE(receiver.push(packet.number, packet.bytes));
   EXPECT_EQ(receiver.state_hash(0), sender.state_hash(0));
   const Sender moved = std::move(sender);
   EXPECT_EQ(moved.scene().get(), address);

@@ -44,8 +44,8 @@ struct Channel {
     const auto sent = sender.encode(tick, truth.of(tick, sample, contact));
     EXPECT_TRUE(sent) << sent.error().rule;
     for (const Packet& packet : *sent) {
-      EXPECT_TRUE(receiver.push(packet.bytes));
-      sender.acknowledge(packet.substream, packet.sequence);
+      EXPECT_TRUE(receiver.push(packet.number, packet.bytes));
+      sender.acknowledge(packet.substream, packet.number);
       ++packets;
     }
     return device_at(receiver, tick, 0);

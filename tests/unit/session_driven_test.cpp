@@ -224,7 +224,7 @@ Cost cost(const char* name, std::uint64_t seed, bool known) {
     const auto packets = sender.encode(tick, truth.of(frame));
     EXPECT_TRUE(packets) << packets.error().rule;
     for (const Packet& packet : *packets) {
-      EXPECT_TRUE(receiver.push(packet.bytes));
+      EXPECT_TRUE(receiver.push(packet.number, packet.bytes));
       out.packets += 1;
       out.bytes += static_cast<double>(packet.bytes.size());
     }

@@ -386,6 +386,53 @@ TEST(Exchange, PacketsOfASceneInWhichNothingMovesAreHeldToo) {
   EXPECT_TRUE(alone.client.due()) << "held, and so acknowledged";
 }
 
+/// A tick of a mesh in layers takes two numbers. When the last number that may go without an acknowledgement takes the first, the second is
+/// nobody's, and the next packet must have another one.
+TEST(Exchange, TheWindowMayEndBetweenTwoPacketsOfATick) {
+  bool ended_between = false;
+  for (int phase = 1; phase < 7; ++phase) {
+    Ends ends({.squares = 44, .count = 1, .layered = true, .noise = 3e-3}, 1);
+    const auto submit = [&] {
+      ends.now += 1000;
+      for (std::size_t i = 0; i < ends.motions.size(); ++i) ends.samples[i] = ends.motions[i].step(1e-2);
+      ends.frames.clear();
+      ends.shapes.clear();
+      for (auto& sheet : ends.sheets) ends.frames.push_back(sheet.frame(ends.tick));
+      for (auto& frame : ends.frames) ends.shapes.push_back(frame.truth());
+      return ends.server->submit(ends.now, ends.tick++, {.objects = ends.samples, .contacts = {}, .deformables = ends.shapes});
+    };
+    const auto go = [&] {
+      for (const Bytes& bytes : ends.drain(*ends.server)) static_cast<void>(ends.hear(*ends.client, bytes));
+      ends.answer();
+    };
+    for (int i = 0; i < 20; ++i) {
+      ASSERT_TRUE(submit());
+      go();
+    }
+    for (int i = 0; i < phase; ++i) static_cast<void>(ends.drain(*ends.server, true));
+    std::uint64_t highest = 0;
+    std::optional<Bytes> first;  // of those that are lost
+    for (int silent = 0; silent <= 20;) {
+      const auto packets = submit();
+      ASSERT_TRUE(packets);
+      silent = packets->empty() ? silent + 1 : 0;
+      if (!packets->empty()) highest = packets->back().number;
+      for (const Bytes& bytes : ends.drain(*ends.server))
+        if (!first) first = bytes;
+    }
+    ended_between = ended_between || highest > ends.server->sent().newest();
+    static_cast<void>(ends.hear(*ends.client, *first));  // it comes after all
+    ends.answer();
+    ends.answer();
+    for (int i = 0; i < 50; ++i) {
+      ends.now += 60'000;
+      ASSERT_TRUE(submit()) << phase;
+      go();
+    }
+  }
+  EXPECT_TRUE(ended_between);
+}
+
 TEST(Exchange, APacketFromBeforeTheFirstNumberIsCountedAsRefused) {
   Ends ends;
   DatagramWriter writer(Direction::down);

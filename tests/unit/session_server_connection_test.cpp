@@ -195,7 +195,7 @@ TEST(ServerConnection, OnlyTheNewestButtonsCount) {
   SenderOptions options = device_sender_options({});
   Sender device = Sender::create(desk.served.device, options).value();
   DeviceTruth truth(100, false);
-  const auto packets = device.encode_numbered(desk.number + 1, 50, truth.of(50, {.position = {0.1, 0.2, 0.3}}, {}));
+  const auto packets = device.encode(50, truth.of(50, {.position = {0.1, 0.2, 0.3}}, {}), desk.number + 1);
   ASSERT_TRUE(packets);
   ASSERT_EQ(packets->size(), 1u);
   ASSERT_TRUE(desk.hear({ButtonsPart{50, 0b10}, PacketPart{0, (*packets)[0].bytes}}));

@@ -63,7 +63,7 @@ std::size_t coded(const TriMesh& rest, const ClusterBasis& clusters) {
     EXPECT_TRUE(packets);
     for (const Packet& packet : *packets) {
       bytes += packet.bytes.size();
-      EXPECT_TRUE(receiver.push(packet.bytes));
+      EXPECT_TRUE(receiver.push(packet.number, packet.bytes));
     }
     EXPECT_EQ(receiver.state_hash(1), sender.state_hash(1));
     const auto shown = receiver.replica().displacements(0, tick);

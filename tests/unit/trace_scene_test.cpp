@@ -168,8 +168,8 @@ TEST_P(TracedScene, BoundsHoldAndAPlayerShowsTheSame) {
     trace.move(tick);
     const Truth truth = frames.of(trace.frame);
     for (const Packet& packet : testing::all(sender.encode(tick, truth))) {
-      ASSERT_TRUE(receiver.push(packet.bytes));
-      ASSERT_TRUE(writer.add(tick, packet.bytes, packet.key));
+      ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
+      ASSERT_TRUE(writer.add(tick, packet.number, packet.bytes, packet.key));
       ++sent;
       if (packet.substream == 1) traffic.add(packet.bytes.size(), packet.updates, packet.key, packet.layer);
     }
@@ -230,7 +230,7 @@ TEST(TraceScene, SendingAllocatesNothing) {
     const Truth truth = frames.of(trace.frame);
     const auto packets = sender.encode(tick, truth);
     ASSERT_TRUE(packets);
-    for (const Packet& packet : *packets) ASSERT_TRUE(receiver.push(packet.bytes));
+    for (const Packet& packet : *packets) ASSERT_TRUE(receiver.push(packet.number, packet.bytes));
     errors.add(trace.frame.meshes[0].displacements, receiver.replica().displacements(0, tick), truth.deformables[0].touch);
     allocated += testing::allocated_bytes() - before;
   }

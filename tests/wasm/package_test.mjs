@@ -37,13 +37,15 @@ let packets = 0;
 const begin = process.hrtime.bigint();
 for (let tick; (tick = player.nextTick()) !== null; ++packets) {
   const packet = player.play(tick);
-  assert.equal(receiver.push(bytes.subarray(packet.offset, packet.offset + packet.bytes)).number, packet.number);
+  assert.equal(receiver.push(packet.number, bytes.subarray(packet.offset, packet.offset + packet.bytes)).number, packet.number);
   assert.equal(receiver.stateHash(0), player.receiver.stateHash(0));
   assert.deepEqual(receiver.poses(tick), player.receiver.poses(tick));
 }
 assert.ok(packets > 0 && player.complete);
 const each = Number(process.hrtime.bigint() - begin) / 1000 / packets;
 console.log(`${packets} packets by player and receiver, ${each.toFixed(1)} us each with hashes and poses of both`);
+assert.throws(() => receiver.push(bytes), /number.*before its bytes/);
+assert.throws(() => receiver.push(0, bytes), (error) => error.rule === "R-API-5");
 receiver.close();
 scene.close();
 player.close();

@@ -88,7 +88,7 @@ function play(player, looks, delay) {
     for (let number = 0, tick; (tick = player.nextTick()) !== null; ++number) {
       lookUntil(tick);
       const packet = player.play(tick);
-      const line = {packet: number, sequence: packet.sequence, key: packet.key, tick, state: receiver.stateHash(packet.substream),
+      const line = {packet: number, number: packet.number, key: packet.key, tick, state: receiver.stateHash(packet.substream),
         part: packet.substream};
       if (packet.kind === "rigid") line.updates = receiver.updates().map((u) => [u.object, reasons.indexOf(u.reason), u.level]);
       if (packet.kind === "deformable") line.vertices = packet.updates;

@@ -38,7 +38,7 @@ def device_scene(scene) -> object:
     object_ = struct.pack("<BBB", 1, 0x3F, 6) + b"device" + struct.pack("<7i", 0, 0, 0, 1 << 30, 0, 0, 0)
     body = struct.pack("<IBBBBHB", scene.tick_rate, scene.position_exp, scene.velocity_exp, scene.rotation_exp, scene.angular_exp,
                        (scene.tick_rate + 5) // 10, 64) + varint_bytes(1) + object_
-    text = b"\x89TCT" + struct.pack("<BBHI", 1, 0, 0, len(body)) + body
+    text = b"\x89TCT" + struct.pack("<BBHI", 2, 0, 0, len(body)) + body
     return read_declaration(text + struct.pack("<I", zlib.crc32(text)))[0]
 
 
@@ -58,7 +58,7 @@ class Reference:
             return False
         substream, payload = epoch.decoders.split(packet)
         try:
-            decoded = session.decode_numbered(epoch.decoders.substreams[substream], number, payload)
+            decoded = epoch.decoders.substreams[substream].decode(number, payload)
         except StreamError as error:  # a packet of a deformable object that was sent again and is there already, or comes too late
             assert substream > 0 and number < epoch.newest and error.rule in ("R-PKT-4", "R-PKT-5"), (number, substream, error)
             self.found.append((number, substream, 0, 0))

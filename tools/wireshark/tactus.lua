@@ -272,7 +272,7 @@ local function extend(epoch, direction, value)
   return newest + (value + 12287 - newest) % 16384 - 12287
 end
 
--- ---- Packets (25, section 9; 40, section 2) --------------------------------------------------------------------------
+-- ---- Packets (25, section 2; 40, section 2) --------------------------------------------------------------------------
 -- Each model is used at most once up to tick_delta, so that start values are enough (spec/tables/rigid-start-models.csv).
 local KEY = { 32092 }
 local BASELINE = {}

@@ -12,7 +12,7 @@ from . import _abi
 
 # What the library says in words of the command line, for those rules that arrays and options of Python break.
 _REMEDIES = {
-    "R-API-5": "Check that the inputs belong together and that times increase.",
+    "R-API-5": "Check that the inputs belong together, that times increase, and that packets have the numbers of their sender.",
     "R-API-4": "Give weber_fraction above 0 and at most 1, which is 100 % (haptic=HAPTIC_OFF for no bound of force), visual_position and "
                "fixed_position of at least 2e-6 m, and angles of 4e-5 to pi rad.",
     "R-CSV-4": "Give finite numbers in at least one row; a row of NaN is a missing sample.",
@@ -22,7 +22,7 @@ _REMEDIES = {
 }
 
 OK, NOTHING, BUFFER_TOO_SMALL = _abi.TACTUS_OK, _abi.TACTUS_NOTHING, _abi.TACTUS_BUFFER_TOO_SMALL
-NO_CLOCK = -(1 << 63)
+PACKET_TICK = -(1 << 63)
 
 
 class Error(Exception):

@@ -6,13 +6,13 @@ import ctypes
 import dataclasses
 import os
 import pathlib
-from typing import Any, Sequence
+from typing import Any, Sequence, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import NO_CLOCK, Handle, answer, bytes_of, call, core, described, handle_of, path_of, read_bytes
+from ._library import PACKET_TICK, Handle, answer, bytes_of, call, core, described, handle_of, path_of, read_bytes
 from .options import ReceiverOptions, SenderOptions
 from .scene import Scene
 
@@ -30,6 +30,7 @@ class Packet:
 
     data       its bytes; empty for one that was decoded
     size       [bytes]
+    number     which is not in its bytes: above 0; of a Sender, and mostly of a file, those of each substream count from 1
     kind       "rigid", "deformable" or "load"
     key        it builds on the initial state
     reason     of rigid objects: the strongest among the updates
@@ -48,17 +49,22 @@ class Packet:
     layer: str
     updates: int
     substream: int
-    sequence: int
     offset: int
 
     @classmethod
     def _of(cls, info: Any, data: bytes = b"", offset: int = 0) -> Packet:
         return cls(data, info.bytes, info.tick, info.number, KINDS[info.kind], bool(info.key), REASONS[info.reason],
-                   LAYERS[info.layer], info.updates, info.substream, info.sequence, offset)
+                   LAYERS[info.layer], info.updates, info.substream, offset)
 
     @classmethod
     def _sent(cls, packet: Any) -> Packet:
         return cls._of(packet, ctypes.string_at(packet.data, packet.bytes))
+
+
+def _data_of(packet: Packet) -> bytes:
+    if len(packet.data) != packet.size:
+        raise ValueError("this packet has no bytes: give one that a Sender coded, or replace its data")
+    return packet.data
 
 
 PARTS = ("object", "contact", "shape", "touch", "load")
@@ -161,7 +167,7 @@ class Sender(Handle):
 
     def acknowledge(self, packet: Packet) -> None:
         """A receiver has decoded this packet."""
-        call(core().tactus_sender_acknowledge, self.handle, packet.substream, packet.sequence)
+        call(core().tactus_sender_acknowledge, self.handle, packet.substream, packet.number)
 
     def set_link(self, answer_ticks: int, loss: float) -> None:
         """The link to the receiver: ticks until a packet is acknowledged (0: not known), and the fraction that is lost."""
@@ -256,14 +262,29 @@ class Receiver(Handle, _Shown):
     def _receiver(self) -> Any:
         return self.handle
 
-    def push(self, packet: bytes, now: int | None = None) -> Packet:
-        """Decode a packet.
+    @overload
+    def push(self, packet: Packet, /, *, now: int | None = None) -> Packet: ...
 
-        now     [ticks] time of arrival on the receiver's clock; None: each packet counts as arriving in its own tick
-        raises  Error, whose `advice` says how to react; the receiver is then unchanged
+    @overload
+    def push(self, number: int, data: bytes, /, now: int | None = None) -> Packet: ...
+
+    def push(self, packet: Packet | int, data: bytes | None = None, /, now: int | None = None) -> Packet:
+        """Decode a packet: push(packet) of a Sender in this program, push(number, data) from a network.
+
+        packet  as the Sender made it, or its number: above 0, below 2^62. It is not in the bytes: send both. A sender that restarts counts
+                anew, so its packets go to a new Receiver
+        now     [ticks] of the client, when the replica applies it; None: the packet's own tick
+        raises  Error, whose `advice` says how to react; the receiver is then unchanged.   ValueError  a packet that was decoded
         """
-        info, data = answer(_abi.tactus_packet_info), bytes_of(packet)
-        call(core().tactus_receiver_push, self.handle, data, len(data), NO_CLOCK if now is None else now, info)
+        number = packet
+        if isinstance(packet, Packet):
+            if data is not None:
+                raise TypeError("a Packet has its bytes: push(packet), or push(packet.number, data)")
+            number, data = packet.number, _data_of(packet)
+        elif data is None:
+            raise TypeError("push(packet) takes a Packet of a Sender; bytes come with their number: push(number, data)")
+        info, given = answer(_abi.tactus_packet_info), bytes_of(data)
+        call(core().tactus_receiver_push, self.handle, number, given, len(given), PACKET_TICK if now is None else now, info)
         return Packet._of(info)
 
 
@@ -326,10 +347,12 @@ class StreamWriter(Handle):
         call(core().tactus_writer_create, handle_of(scene, Scene), ctypes.byref(self._handle))
 
     def add(self, packet: Packet) -> None:
-        """Ticks must not fall.   raises  ValueError  a packet that was decoded, which has no bytes"""
-        if len(packet.data) != packet.size:
-            raise ValueError("this packet has no bytes: give one that a Sender coded, or replace its data")
-        call(core().tactus_writer_add, self.handle, packet.tick, packet.data, len(packet.data), packet.key)
+        """Ticks must not fall, and no packet may be left out: a file does not hold numbers, but counts.
+
+        raises  Error.   ValueError  a packet that was decoded, which has no bytes
+        """
+        data = _data_of(packet)
+        call(core().tactus_writer_add, self.handle, packet.tick, packet.number, data, len(data), packet.key)
 
     def take(self) -> bytes:
         """What was written since the last call."""

@@ -81,7 +81,7 @@ class SceneOptions(_abi.tactus_scene_options):
 
 
 class SenderOptions(_abi.tactus_sender_options):
-    """reduction, baseline, first_sequence, key_interval [s], visual_fraction, haptic_fraction; rigid and deformable: bounds."""
+    """reduction, baseline, key_interval [s], visual_fraction, haptic_fraction; rigid and deformable: bounds."""
 
     def __init__(self, rigid: RigidBounds | None = None, deformable: DeformableBounds | None = None, **fields: Any) -> None:
         super().__init__()

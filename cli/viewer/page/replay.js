@@ -82,9 +82,9 @@ export class Replay {
   }
 
   #push(i) {
-    const {offsets, sizes} = this.packets;
+    const {numbers, offsets, sizes} = this.packets;
     const at = offsets[i] - this.#offset;
-    this.#receiver.push(this.#bytes.view.subarray(at, at + sizes[i]));
+    this.#receiver.push(numbers[i], this.#bytes.view.subarray(at, at + sizes[i]));
   }
 
   poses(out) {

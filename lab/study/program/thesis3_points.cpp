@@ -55,7 +55,7 @@ class Watcher {
     return Watcher(std::move(receiver));
   }
   Result<void> take(std::span<const Packet> packets) {
-    for (const Packet& packet : packets) TACTUS_CHECK(receiver_.push(packet.bytes));
+    for (const Packet& packet : packets) TACTUS_CHECK(receiver_.push(packet.number, packet.bytes));
     return {};
   }
   /// [N] at the pose shown now; the client keeps what it showed.

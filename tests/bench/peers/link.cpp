@@ -125,7 +125,7 @@ class OurLink final : public Link {
     return {packets[0].bytes.begin(), packets[0].bytes.end()};
   }
   bool decode(std::size_t frame, std::span<const std::uint8_t> packet, std::span<Vec3i> shown) override {
-    if (!packet.empty() && !receiver_.push(packet)) return false;
+    if (!packet.empty() && !receiver_.push(++number_, packet)) return false;
     const auto displacement = receiver_.replica().displacements(0, static_cast<std::int64_t>(frame));
     for (std::size_t v = 0; v < rest_.size(); ++v)
       for (std::size_t axis = 0; axis < 3; ++axis)
@@ -138,6 +138,7 @@ class OurLink final : public Link {
   Sender sender_;
   Receiver receiver_;
   std::span<const Vec3i> rest_;       // of the sender's scene
+  std::uint64_t number_ = 0;          // of the last packet decoded
   std::vector<float> displacements_;  // [m] exact as far as a vertex moves by less than 2^24 steps
 };
 
