@@ -138,7 +138,7 @@ class MainDecoder {
   MainReader reader_;
   RangeDecoder coder_{{}};
   std::uint64_t payload_ = 0;  // [bytes]
-  MainModels models_;
+  MainModels models_ = main_start_models();
   MainHead head_;
   MainState next_;                         // pending: no state changes before the whole packet has proved valid
   std::unique_ptr<FollowedShape> driven_;  // null: no device is known

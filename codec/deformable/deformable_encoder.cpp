@@ -82,6 +82,7 @@ MainEncoder::MainEncoder(const Scene& scene, const DeformableObject& object, con
       projected_(object.basis.steps.size()),
       driven_(std::move(driven)) {
   coded_.reserve(object.rest.size());
+  static_cast<void>(main_start_models());  // they are unpacked once, and not within a tick
 }
 
 /// Bounds on the grid, smaller by the truth's own rounding, so that they hold for the unrounded truth.

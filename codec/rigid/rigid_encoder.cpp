@@ -62,6 +62,7 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, co
       truth_(truth),
       work_(work),
       awake_(scene.objects.size()) {
+  static_cast<void>(start_models());  // they are unpacked once, and not within a tick
   if (predictor_.has_device_path()) driven_.emplace(scene, *device);
   if (truth.past() != nullptr) choice_.emplace(scene, driven_ ? driven_->past : *truth.past(), device);
   pending_.reserve(scene.moving().size());
