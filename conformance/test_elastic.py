@@ -18,7 +18,7 @@ from elastic import STILL, Shapes
 from elastic_matrix import quotient
 from elastic_step import Stepper, rotation, turn
 from elastic_touch import Proxy, Surface
-from scene import Declaration, Limits, State, read_declaration
+from scene import MAGIC, VERSION, Declaration, Limits, State, read_declaration
 
 SIDE = 3                                                    # vertices along an edge of the block
 UNIT = 1 << 16                                              # of the grid, between two of them: 16 mm
@@ -92,7 +92,7 @@ def declaration(bodies: bytes, frame_period: int = 256 * TICKS, layered: int = 0
     outside = BLOCK.where[:-1]
     body += varint(1) + bytes([1, 1]) + b"b" + bytes([2]) + struct.pack("<IBHB", frame_period, layered, 0, 1)
     body += varint(len(outside)) + varint(len(BLOCK.triangles)) + points(outside) + chained(BLOCK.triangles) + bytes([0])
-    data = b"\x89TCT" + struct.pack("<BBHI", 1, 0, 33, len(body + bodies)) + body + bodies
+    data = MAGIC + struct.pack("<BBHI", VERSION, 0, 33, len(body + bodies)) + body + bodies
     return data + struct.pack("<I", zlib.crc32(data))
 
 

@@ -20,7 +20,7 @@ import differential
 import run
 from client import Device
 from datagram import STATE
-from scene import read_declaration
+from scene import MAGIC, VERSION, read_declaration
 from session import Epoch
 from session_server import ServedEpoch
 
@@ -33,7 +33,7 @@ def with_crc(data: bytes) -> bytes:
 
 # An empty scene: 1000 ticks/s, no object, no record. Its state hash is that of no bytes.
 BODY = struct.pack("<IBBBBHBB", 1000, 22, 17, 19, 12, 2000, 1, 0)
-VALID = with_crc(b"\x89TCT" + struct.pack("<BBHI", 2, 0, 0, len(BODY)) + BODY)
+VALID = with_crc(MAGIC + struct.pack("<BBHI", VERSION, 0, 0, len(BODY)) + BODY)
 HEADER_LINE = ('{"header":{"version":2,"profile":0,"tick_rate":1000,"grid":[22,17,19,12],"max_extrapolation":2000,'
                '"baseline_span":1,"objects":[]}}\n')
 VALID_REPLY = HEADER_LINE + '{"end":{"complete":false,"packets":0,"state":"cbf29ce484222325"}}\n'
@@ -344,7 +344,7 @@ class DevicePathTest(unittest.TestCase):
     def setUp(self) -> None:
         cube = b"\x01\x3f\x01a" + struct.pack("<7i", 0, 0, 0, 1 << 30, 0, 0, 0)
         body = struct.pack("<IBBBBHBB", 1000, 22, 17, 19, 12, 2000, 64, 1) + cube + struct.pack("<5I2H", 1000, 0, 1, 1, 1, 0, 0)
-        self.scene, _ = read_declaration(with_crc(b"\x89TCT" + struct.pack("<BBHI", 2, 0, 16, len(body)) + body))
+        self.scene, _ = read_declaration(with_crc(MAGIC + struct.pack("<BBHI", VERSION, 0, 16, len(body)) + body))
         self.client, self.server = Epoch(1, 0, 0, 0, 0, 0), ServedEpoch(1, 0, 0, 0, 0, 0)
         self.client.scene = self.server.scene = self.scene
         self.client.drives()
