@@ -73,7 +73,7 @@ endfunction()
 function(tactus_missing out)
   set(missing)
   foreach(required IN LISTS ARGN)
-    if(required MATCHES "^(session|trace|net|seal|tets|fem|surface|sim|device|wasm|c)$")
+    if(required MATCHES "^(thesis|session|trace|net|seal|tets|fem|surface|sim|device|wasm|c)$")
       if(NOT TARGET tactus_${required})
         string(TOUPPER ${required} upper)
         list(APPEND missing "TACTUS_WITH_${upper}")
@@ -114,7 +114,7 @@ function(tactus_component name dir)
 endfunction()
 
 # The components that are libraries, in the order in which they build on one another.
-set(TACTUS_LIBRARIES codec session trace net seal metrics tets modes surface fem sim device falcon hid openhaptics inverse3 c c_trace)
+set(TACTUS_LIBRARIES codec thesis session trace net seal metrics tets modes surface fem sim device falcon hid openhaptics inverse3 c c_trace)
 
 # tactus_components(BUILT LEFT_OUT): the libraries that are there and those that are not.
 function(tactus_components built left_out)

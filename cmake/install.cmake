@@ -33,6 +33,6 @@ function(tactus_install)
     DESTINATION ${config_dir})
   install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libtactus-dev COMPONENT development)
   install(DIRECTORY spec docs examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libtactus-dev COMPONENT development
-    PATTERN "*.md" PATTERN "*.csv" PATTERN "*.cpp" PATTERN "*.c" PATTERN "*.py" PATTERN "*.mjs"
+    PATTERN "*.md" PATTERN "*.csv" PATTERN "*.cpp" PATTERN "*.c" PATTERN "*.h" PATTERN "*.cs" PATTERN "*.py" PATTERN "*.mjs"
     PATTERN "make.py" EXCLUDE PATTERN "tools" EXCLUDE PATTERN "__pycache__" EXCLUDE PATTERN "CMakeLists.txt" EXCLUDE)
 endfunction()

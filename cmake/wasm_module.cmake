@@ -21,6 +21,9 @@ function(tactus_wasm_flags source out)
     -fexceptions -fignore-exceptions -U__EXCEPTIONS -U__cpp_exceptions -fno-rtti -ffp-contract=off -fvisibility=hidden
     -isystem ${WASM_CXX_INCLUDE} -I ${PROJECT_BINARY_DIR}/wasm/include -I ${PROJECT_BINARY_DIR}/include -I ${PROJECT_BINARY_DIR}/codec -I ${PROJECT_SOURCE_DIR}
     -I ${PROJECT_SOURCE_DIR}/bindings/c)
+  if(TARGET tactus_thesis)
+    list(APPEND flags -DTACTUS_HAS_THESIS)
+  endif()
   find_package(tl-expected REQUIRED)
   get_target_property(include_dirs tl::expected INTERFACE_INCLUDE_DIRECTORIES)
   foreach(dir ${include_dirs})

@@ -22,7 +22,7 @@ struct Receiver::Impl {
         device(std::move(of_client)),
         rigid(*scene, options.limits, initial_states(*scene), *scene),
         deformables(decoders(*scene, options.limits, device)),
-        replica(*scene, options.replica, shapes(deformables), device.path.get()) {
+        replica(*scene, options.replica, shapes(deformables), device.path.get(), thesis_for(*scene, options)) {
     if (scene->loads) loads.emplace(*scene, options.limits, initial_loads(*scene), *scene);
     std::size_t vertices = 0;
     for (const DeformableObject& object : scene->deformables) vertices = std::max(vertices, object.rest.size());
@@ -35,6 +35,9 @@ struct Receiver::Impl {
     for (std::size_t i = 0; i < scene.deformables.size(); ++i)
       out.push_back(scene.mesh_support()->decoder(scene, i, limits, device.shape_of(scene, scene.deformables[i])));
     return out;
+  }
+  static const ThesisComponent* thesis_for(const Scene& scene, const ReceiverOptions& options) noexcept {
+    return options.limits.thesis ? options.limits.thesis : scene.thesis();
   }
   static std::vector<DeformableDecoder*> shapes(const Decoders& decoders) {
     std::vector<DeformableDecoder*> out;
@@ -68,7 +71,7 @@ Result<Receiver> Receiver::create(SharedScene scene, const ReceiverOptions& opti
 
 Result<Receiver> Receiver::create_with(SharedScene scene, const ReceiverOptions& options, KnownDevice device) try {
   TACTUS_CHECK(check_scene(*scene, options.limits));
-  TACTUS_CHECK(Replica::check(options.replica, *scene));
+  TACTUS_CHECK(Replica::check(options.replica, *scene, Impl::thesis_for(*scene, options)));
   return Receiver(std::make_unique<Impl>(std::move(scene), options, std::move(device)));
 } catch (const std::bad_alloc&) {
   return out_of_memory();

@@ -36,7 +36,8 @@ struct ReceiverOptions {
 /// Threads: one at a time. The scene is shared. No allocation and no exception after create().
 class Receiver {
  public:
-  /// err  invalid_argument R-API-4: a replica option; limit_exceeded R-STR-14, R-STR-18 the scene is beyond the limits, R-API-11 memory
+  /// err  invalid_argument R-API-4: a replica option; limit_exceeded R-STR-14, R-STR-18 the scene is beyond the limits, R-API-11 memory;
+  ///      unsupported R-API-16: an interpolation of component thesis, which neither the limits nor the scene have
   static Result<Receiver> create(SharedScene scene, const ReceiverOptions& options = {});
   /// The same where the device of this client is known, as its server knows it: what it drives is shown where it moves it, packet or none.
   /// in   device  its path; null: it is not known

@@ -6,13 +6,12 @@ So the syntax of packets is written once. Elements bear the names of their model
 from __future__ import annotations
 
 import deformable_main
-import deformable_thesis
 import load
 import rigid
+import thesis_mesh
 from case_text import CaseError, Element, Elements, bytes_of
-from conventions import Cursor, StreamError, require
+from conventions import Cursor, StreamError, require, zigzag
 from declaration_syntax import varint_bytes, zigzagged
-from deformable_header import zigzag
 from range_coder import RangeDecoder
 from range_encoder import RangeEncoder
 from start_models import Models
@@ -52,7 +51,7 @@ class NamedInitialModels(load.InitialModels):
         return self[name]
 
 
-class NamedThesisModels(deformable_thesis.ThesisModels):
+class NamedThesisModels(thesis_mesh.ThesisModels):
     def copy(self):
         plain = super().copy()
         return NamedThesisModels(named(plain.list, "symbol"), named(plain.errors, "error"))
@@ -167,11 +166,11 @@ class Writer:
 
 def install(coder: type) -> None:
     """Lets the decoders of packets run over a coder."""
-    for module in (rigid, load, deformable_main, deformable_thesis):
+    for module in (rigid, load, deformable_main, thesis_mesh):
         module.RangeDecoder = coder
     rigid.Models = deformable_main.Models = NamedModels
     load.InitialModels = NamedInitialModels
-    deformable_thesis.ThesisModels = NamedThesisModels
+    thesis_mesh.ThesisModels = NamedThesisModels
 
 
 def fixed_bytes(encoder: RangeEncoder) -> bytes:
@@ -183,7 +182,7 @@ def fixed_bytes(encoder: RangeEncoder) -> bytes:
 
 
 def is_thesis(decoder) -> bool:
-    return isinstance(getattr(decoder, "codec", None), deformable_thesis.ThesisCodec)
+    return isinstance(getattr(decoder, "codec", None), thesis_mesh.ThesisCodec)
 
 
 # ---- Heads of profile thesis, which are not range coded -------------------------------------------------------------

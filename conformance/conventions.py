@@ -48,6 +48,10 @@ class Cursor:
         raise StreamError(*overlong)
 
 
+def zigzag(z: int) -> int:
+    return z // 2 if z % 2 == 0 else -((z + 1) // 2)
+
+
 STR_5 = ("truncated", "R-STR-5")
 STR_5_VARINT = ("malformed", "R-STR-5")
 

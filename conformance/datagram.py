@@ -6,8 +6,7 @@ import struct
 import zlib
 from typing import Iterator
 
-from conventions import Cursor, require
-from deformable_header import zigzag
+from conventions import Cursor, require, zigzag
 
 UP, DOWN = 0, 1
 HANDSHAKE, PARTS, PACKET = range(3)                         # forms

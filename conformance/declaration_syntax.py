@@ -11,8 +11,8 @@ import struct
 import zlib
 
 from case_text import CaseError, Element, Elements, Value, bytes_of, digits
-from conventions import Cursor, StreamError
-from deformable_header import CLUSTERS, COMPUTED, DECLARED, MAIN, THESIS, zigzag
+from conventions import Cursor, StreamError, zigzag
+from deformable_header import CLUSTERS, COMPUTED, DECLARED, MAIN, THESIS
 from scene import BOUNDS, HAS_BODIES, HAS_DEFORMABLES, HAS_INTEREST, HAS_LOADS, HAS_MOTION, IS_DRIVEN, MAGIC, STIFFNESS, VERSION
 
 FIXED = struct.Struct("<4sBBHI")

@@ -3,7 +3,7 @@
 
 Written from spec/ alone and meant to be read beside it: functions carry the names of the specification, and each
 file names its chapter. As a program it is a testee (README.md):
-python3 decoder.py [--replica none|device|linear|hermite|blending|playout] < stream.tct
+python3 decoder.py [--replica none|device|linear|hermite|blending|playout] [--without thesis] < stream.tct
 """
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from device_path import DevicePath
 from deformable_decoder import DeformableDecoder, DeformablePacket
 from elastic import Shapes
 from file import File
+from interpolation import MODES, InterpolatedReplica
 from load import LoadDecoder, LoadPacket
 from playout import Playout
 from replica import Replica
@@ -86,10 +87,10 @@ def describe_packet(packet: Union[Packet, DeformablePacket, LoadPacket]) -> dict
     return {**out, "range": f"{packet.range:08x}", "code": f"{packet.code:08x}"}
 
 
-def lines(data: bytes, mode: Optional[str]) -> Iterator[dict]:
+def lines(data: bytes, mode: Optional[str], limits: Limits = Limits()) -> Iterator[dict]:
     """The reply to a stream file, line by line; raises StreamError where the input is rejected."""
-    file = File(data)
-    decoders = SceneDecoder(file.declaration)
+    file = File(data, limits)
+    decoders = SceneDecoder(file.declaration, limits)
     viewer = Viewer(file.declaration, decoders, mode) if mode else None
     several = len(decoders.substreams) > 1
     yield {"header": describe_declaration(file.declaration)}
@@ -127,7 +128,8 @@ class Viewer:
         self.path = DevicePath(scene) if mode == "device" else None
         if self.path:
             self.path.begin(0, 0)
-        self.replica = Playout(scene) if self.playout else Replica(scene, "none" if self.path else mode, self.path)
+        interpolates = mode in MODES and not scene.smoothed               # 60, section 1
+        self.replica = Playout(scene) if self.playout else InterpolatedReplica(scene, mode) if interpolates else Replica(scene, self.path)
         self.deformables = [decoders.substreams[i + 1] for i in range(len(scene.deformables))]
         self.shapes = [Shapes(scene, item, self.path) if self.path and item.body else None for item in scene.deformables]
         self.tick, self.all = 0, FNV_START
@@ -155,19 +157,23 @@ class Viewer:
         return fnv1a(struct.pack(f"<Q{len(displacements)}i", shown, *displacements))
 
 
-def session_lines() -> Iterator[dict]:
+def session_lines(limits: Limits) -> Iterator[dict]:
     import session                                          # which imports this module
-    return session.lines(sys.stdin.read())
+    return session.lines(sys.stdin.read(), limits)
 
 
 def main(arguments: Optional[list[str]] = None) -> int:
     parser = argparse.ArgumentParser(description="Decode a Tactus stream file from standard input to JSON lines.")
-    parser.add_argument("--replica", choices=("none", "device", "linear", "hermite", "blending", "playout"),
+    parser.add_argument("--replica", choices=("none", "device", *MODES, "playout"),
                         help="also show what a client shows")
     parser.add_argument("--session", action="store_true", help="read a script for the client's end of a session instead")
+    parser.add_argument("--without", choices=("thesis",), help="decode as one that lacks component thesis")
     options = parser.parse_args(arguments)
+    limits = Limits(thesis=options.without != "thesis")
+    if options.replica in MODES and not limits.thesis:
+        parser.error(f"--replica {options.replica} needs component thesis")
     try:
-        for line in session_lines() if options.session else lines(sys.stdin.buffer.read(), options.replica):
+        for line in session_lines(limits) if options.session else lines(sys.stdin.buffer.read(), options.replica, limits):
             print(json.dumps(line, separators=(",", ":")))
     except StreamError as error:
         print(json.dumps({"error": {"errc": error.errc, "rule": error.rule}}, separators=(",", ":")))

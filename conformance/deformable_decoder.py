@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple, Optional, Union
 from conventions import fnv1a, require
 from deformable_header import MAIN, DeformableObject
 from deformable_main import MainCodec, MainState
-from deformable_thesis import ThesisCodec, ThesisState
 from packet import Receiver
 from scene import Declaration, Limits
+from thesis_mesh import ThesisCodec, ThesisState
 
 if TYPE_CHECKING:
     from elastic import Shapes

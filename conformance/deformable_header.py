@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, Optional
 
-from conventions import STR_5, STR_5_VARINT, Cursor, require, text
+import thesis_mesh
+from conventions import STR_5, STR_5_VARINT, Cursor, require, text, zigzag
 from deformable_graph import first_graph
 
 if TYPE_CHECKING:
@@ -28,8 +29,8 @@ class DeformableObject:
     profile: int
     name: str
     rings: int
-    quant_bits: Optional[int] = None                        # thesis
-    models_kept: Optional[int] = None                       # thesis
+    quant_bits: Optional[int] = None                        # thesis: chapter 85
+    models_kept: Optional[int] = None                       # thesis: the same
     frame_period: Optional[int] = None                      # main
     layered: Optional[int] = None                           # main
     fade: int = 0                                           # main: fraction per frame, x 2^-16
@@ -45,28 +46,28 @@ class DeformableObject:
     body: Optional[ElasticBody] = None                      # main
 
 
-def read_deformable_objects(body: Cursor, most: int, vertices_left: int, triangles_left: int) -> list[DeformableObject]:
+def read_deformable_objects(body: Cursor, most: int, vertices_left: int, triangles_left: int, thesis: bool) -> list[DeformableObject]:
+    """`thesis`: this decoder has component thesis."""
     count = body.varint(STR_5, STR_5_VARINT)
     require(count >= 1, "malformed", "R-DEF-1")
     require(count <= 255, "invalid", "R-DEF-1")
     require(count <= most, "limit_exceeded", "R-STR-14")
     items = []
     for _ in range(count):
-        item = read_deformable_object(body, vertices_left, triangles_left)
+        item = read_deformable_object(body, vertices_left, triangles_left, thesis)
         vertices_left -= len(item.rest)
         triangles_left -= len(item.triangles)
         items.append(item)
     return items
 
 
-def read_deformable_object(body: Cursor, vertices_left: int, triangles_left: int) -> DeformableObject:
+def read_deformable_object(body: Cursor, vertices_left: int, triangles_left: int, thesis: bool) -> DeformableObject:
     profile = body.number(1, STR_5)
-    require(profile in (THESIS, MAIN), "unsupported", "R-DEF-2")
+    require(profile == MAIN or profile == THESIS and thesis, "unsupported", "R-DEF-2")
     name_bytes = body.take(body.number(1, STR_5), STR_5)
     item = DeformableObject(profile, "", body.number(1, STR_5))
     if profile == THESIS:
-        item.quant_bits, item.models_kept = body.take(2, STR_5)
-        require(item.models_kept <= 1, "malformed", "R-DEF-3")
+        item.quant_bits, item.models_kept = thesis_mesh.read_parameters(body)
     else:
         item.frame_period, item.layered = body.number(4, STR_5), body.number(1, STR_5)
         require(item.layered <= 1, "malformed", "R-DEF-3")
@@ -88,13 +89,9 @@ def read_deformable_object(body: Cursor, vertices_left: int, triangles_left: int
 def check_numbers(item: DeformableObject) -> None:
     require(item.rings <= 32, "invalid", "R-DEF-3")
     if item.profile == THESIS:
-        require(1 <= item.quant_bits <= 12, "invalid", "R-DEF-3")
+        thesis_mesh.check_parameters(item)
     else:
         require(1 <= item.frame_period <= 1 << 28 and 1 <= item.weight_sets <= 7, "invalid", "R-DEF-3")
-
-
-def zigzag(z: int) -> int:
-    return z // 2 if z % 2 == 0 else -((z + 1) // 2)
 
 
 def read_zigzag(body: Cursor) -> int:

@@ -21,7 +21,9 @@ import decoder
 import session
 from conventions import StreamError
 from file import File
+from interpolation import MODES
 from run import Crash, difference, load_cases, run_testee
+from scene import Limits
 from session_damage import Scripts, make_script
 
 FIXED = 12                                                  # bytes of the declaration before its body
@@ -141,11 +143,11 @@ def last_tick(data: bytes) -> int:
     return tick
 
 
-def expected(data: bytes, mode: Optional[str]) -> tuple[int, list[str]]:
+def expected(data: bytes, mode: Optional[str], limits: Limits = Limits()) -> tuple[int, list[str]]:
     """Exit status and lines of decoder.py, without a process for each case."""
     lines = []
     try:
-        for line in decoder.lines(data, mode):
+        for line in decoder.lines(data, mode, limits):
             lines.append(json.dumps(line, separators=(",", ":")))
     except StreamError as error:
         return 1, lines + [json.dumps({"error": {"errc": error.errc, "rule": error.rule}}, separators=(",", ":"))]
@@ -167,11 +169,13 @@ def first_difference(command: list[str], data: bytes, wanted: tuple[int, list[st
 
 
 def compare(options: argparse.Namespace, vectors: Vectors) -> int:
-    command = shlex.split(options.testee)
+    command, limits = shlex.split(options.testee), Limits(thesis=options.without != "thesis")
     accepted, rules, differences = 0, set(), 0
     for number in range(options.first, options.first + options.cases):
         data, mode = make_case(vectors, options.seed, number)
-        wanted = expected(data, mode)
+        if mode in MODES and not limits.thesis:
+            mode = "none"
+        wanted = expected(data, mode, limits)
         accepted += wanted[0] == 0
         if wanted[0] == 1:
             rules.add(json.loads(wanted[1][-1])["error"]["rule"])
@@ -186,12 +190,12 @@ def compare(options: argparse.Namespace, vectors: Vectors) -> int:
 
 
 def compare_sessions(options: argparse.Namespace, scripts: Scripts) -> int:
-    command = shlex.split(options.testee) + ["--session"]
+    command, limits = shlex.split(options.testee) + ["--session"], Limits(thesis=options.without != "thesis")
     rules, differences = set(), 0
     for number in range(options.first, options.first + options.cases):
         text = make_script(scripts, options.seed, number)
         try:
-            lines = list(session.lines(text))
+            lines = list(session.lines(text, limits))
         except Exception as error:                          # a defect of session.py, not of the script
             found = f"session.py: {error!r}"
             lines = []
@@ -212,6 +216,7 @@ def main(arguments: list[str], root: Path) -> int:
     parser.add_argument("--sessions", action="store_true", help="damaged scripts of sessions instead, for both ends")
     parser.add_argument("--testee", metavar="CMD", required=True, help="command line of the decoder")
     parser.add_argument("--only", metavar="GLOB", default="*", help="damage the vectors whose id matches, as 'rigid/*' (default: all; not with --sessions)")
+    parser.add_argument("--without", choices=("thesis",), help="the testee lacks this component")
     parser.add_argument("--cases", type=int, default=1000, help="how many files (default: 1000)")
     parser.add_argument("--first", type=int, default=0, help="number of the first one (default: 0)")
     parser.add_argument("--seed", type=int, default=1, help="another seed damages otherwise (default: 1)")

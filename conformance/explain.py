@@ -7,12 +7,12 @@ import sys
 from pathlib import Path
 
 import deformable_main
-import deformable_thesis
 import load
 import rigid
-from conventions import Cursor, StreamError, clamp, round_shift
+import thesis_mesh
+from conventions import Cursor, StreamError, clamp, round_shift, zigzag
 from decoder import File, SceneDecoder
-from deformable_header import CLUSTERS, COMPUTED, MAIN, NO_BASIS, zigzag
+from deformable_header import CLUSTERS, COMPUTED, MAIN, NO_BASIS
 from deformable_motion import FARTHEST, combine, lim
 from packet import Receiver
 from range_coder import RangeDecoder
@@ -55,7 +55,7 @@ class NamedInitialModels(load.InitialModels):
         return models
 
 
-class NamedThesisModels(deformable_thesis.ThesisModels):
+class NamedThesisModels(thesis_mesh.ThesisModels):
     def copy(self):
         copied = super().copy()
         name_models("GAP", copied.list)
@@ -131,8 +131,8 @@ def narrate():
     """From now on decoders record what they do."""
     rigid.Models = deformable_main.Models = NamedModels
     load.InitialModels = NamedInitialModels
-    deformable_thesis.ThesisModels = NamedThesisModels
-    load.RangeDecoder = rigid.RangeDecoder = deformable_main.RangeDecoder = deformable_thesis.RangeDecoder = Narrator
+    thesis_mesh.ThesisModels = NamedThesisModels
+    load.RangeDecoder = rigid.RangeDecoder = deformable_main.RangeDecoder = thesis_mesh.RangeDecoder = Narrator
     baseline = Receiver.baseline
 
     def find(receiver, number, key, baseline_delta):

@@ -19,7 +19,8 @@ MODULES = {
     "start_models": ("rigid", "deformable"),
     "decoder": ("packet", "client"),
     "deformable_basis": ("deformable",), "deformable_clusters": ("deformable",), "deformable_header": ("deformable",), "deformable_graph": ("deformable",), "deformable_main": ("deformable",),
-    "deformable_motion": ("deformable",), "deformable_thesis": ("deformable",), "deformable_decoder": ("deformable", "packet")}
+    "deformable_motion": ("deformable",), "deformable_decoder": ("deformable", "packet"),
+    "thesis_mesh": ("thesis",), "interpolation": ("thesis",)}
 LEFT_ALONE = {"main", "session_lines"}                                       # functions
 KINDS = ("constant", "index", "comparison", "clamp", "arithmetic", "rounding", "condition", "check", "order")
 

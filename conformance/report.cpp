@@ -173,7 +173,10 @@ void write_packet(const DecodedPacket& packet, std::uint64_t state, std::ostream
 
 void write_shown(std::uint64_t hash, std::ostream& out) { out << R"(,"shown":")" << hex(hash, 16) << '"'; }
 
-constexpr DecodeLimits kLimits{.header_bytes = 1u << 20, .packet_bytes = 1u << 20};  // of every testee, README.md
+/// Those of every testee, README.md.
+DecodeLimits limits_of(const TesteeOptions& options) {
+  return {.header_bytes = 1u << 20, .packet_bytes = 1u << 20, .thesis = options.thesis};
+}
 
 /// A receiver that gets every packet at its tick and looks at every tick; in playout, at the tick that lies so far back.
 class Client {
@@ -183,16 +186,18 @@ class Client {
     const Interpolation interpolation = wanted.value_or(Interpolation::none);
     return scene.is_smoothed && interpolation != Interpolation::playout ? Interpolation::none : interpolation;
   }
-  /// in   device  the first moving object is the client's device, in the server's own ticks
-  static Result<Client> create(const SharedScene& scene, std::optional<Interpolation> interpolation, bool device) {
+  /// A device is in the server's own ticks.
+  static Result<Client> create(const SharedScene& scene, const TesteeOptions& options) {
+    const std::optional<Interpolation> interpolation = options.replica;
     std::shared_ptr<DevicePath> path;
-    if (device) {
+    if (options.device) {
       path = std::make_shared<DevicePath>(scene);
       path->shift(0, 0);
     }
-    TACTUS_TRY(Receiver receiver,
-               Receiver::create(scene, {.replica = {.interpolation = interpolation_in(*scene, interpolation)}, .limits = kLimits},
-                                path));
+    TACTUS_TRY(
+        Receiver receiver,
+        Receiver::create(
+            scene, {.replica = {.interpolation = interpolation_in(*scene, interpolation)}, .limits = limits_of(options)}, path));
     const std::int64_t delay = interpolation == Interpolation::playout ? kPlayoutDelay : 0;
     return Client(scene, std::move(receiver), interpolation.has_value(), delay, std::move(path));
   }
@@ -266,9 +271,9 @@ class Client {
 
 }  // namespace
 
-Result<void> report(std::span<const std::uint8_t> file, std::optional<Interpolation> replica, bool device, std::ostream& out) {
-  TACTUS_TRY(auto reader, StreamFileReader::open(file, kLimits));
-  TACTUS_TRY(auto client, Client::create(reader.scene(), replica, device));
+Result<void> report(std::span<const std::uint8_t> file, const TesteeOptions& options, std::ostream& out) {
+  TACTUS_TRY(auto reader, StreamFileReader::open(file, limits_of(options)));
+  TACTUS_TRY(auto client, Client::create(reader.scene(), options));
   write_header_line(*reader.scene(), out);
   for (std::uint64_t number = 0;; ++number) {
     TACTUS_TRY(const auto record, reader.next());

@@ -9,14 +9,19 @@
 
 #include <tactus/base/result.h>
 #include <tactus/client/replica.h>
+#include <tactus/thesis/if_built.h>
 
 namespace tactus::conformance {
 
+struct TesteeOptions {
+  std::optional<Interpolation> replica;               ///< also run a client of this kind: adds the hashes of the poses it shows
+  bool device = false;                                ///< the first moving object is that client's device
+  const ThesisComponent* thesis = thesis_if_built();  ///< null: a decoder without it
+};
+
 /// Decode a whole stream file and write one JSON line for the header, for every packet and for the end.
-/// in  replica  also run a client of this kind: adds the hashes of the poses it shows
-///     device   the first moving object is that client's device
 /// err  the rule that the file breaks; the lines written before it stand.
-Result<void> report(std::span<const std::uint8_t> file, std::optional<Interpolation> replica, bool device, std::ostream& out);
+Result<void> report(std::span<const std::uint8_t> file, const TesteeOptions& options, std::ostream& out);
 
 /// The line that ends the output for a rejected file.
 void report_error(const char* errc, const char* rule, std::ostream& out);

@@ -27,6 +27,16 @@ SHOWN = 160                                                 # characters of a wr
 LARGEST_OUTPUT = 64 << 20                                   # bytes; a testee that writes more is stopped
 
 
+class Component(NamedTuple):
+    """What a decoder may lack (README.md, "Without a component")."""
+    modes: set[str]                                         # of --replica, that belong to it
+    lacking: dict                                           # how a decoder without it answers a scene that needs it
+    part_of: str                                            # profile without which it is not asked
+
+
+COMPONENTS = {"thesis": Component({"linear", "hermite", "blending"}, {"errc": "unsupported", "rule": "R-DEF-2"}, "main")}
+
+
 class Crash(Exception):
     """The testee did neither accept nor reject the input."""
 
@@ -264,12 +274,14 @@ def known_failures(root: Path) -> set[str]:
 Testee = Callable[[list[str], bytes], tuple[int, list[str]]]  # of a case's arguments and input
 
 
-def make_testee(command: Optional[str]) -> Testee:
+def make_testee(command: Optional[str], without: set[str]) -> Testee:
+    """Without a command the second decoder, which lacks the components that are left out."""
     if command:
         return lambda arguments, data: run_testee(shlex.split(command) + arguments, data)
     import decoder                                          # beside this file
     import session  # noqa: F401                            # which it imports late
-    return lambda arguments, data: reply_of(lambda stdin: Fork(decoder.main, arguments, stdin), data)
+    lacks = [word for name in sorted(COMPONENTS.keys() & without) for word in ("--without", name)]
+    return lambda arguments, data: reply_of(lambda stdin: Fork(decoder.main, arguments + lacks, stdin), data)
 
 
 def judge(case: Case, testee: Testee, known: bool) -> Result:
@@ -282,13 +294,31 @@ def judge(case: Case, testee: Testee, known: bool) -> Result:
     return Result(case.id, "fail", "passes; take it off known-failures.txt") if known else Result(case.id, "pass", "")
 
 
+def needed(case: Case) -> set[str]:
+    """Profiles, flags and components that the case needs."""
+    return case.traits | {name for name, c in COMPONENTS.items() if case.id.startswith(f"{name}/") or c.modes & set(case.args)}
+
+
+def lacking(case: Case, without: set[str]) -> Optional[Case]:
+    """Where a decoder lacks a component and nothing else that the case needs: what it must answer to a valid scene of this component."""
+    names = needed(case) & without
+    component = COMPONENTS.get(next(iter(names))) if len(names) == 1 else None
+    if component is None or case.error or component.part_of in without or component.modes & set(case.args) or not names <= case.traits:
+        return None
+    return case._replace(answer=case.answer._replace(size=0), error=component.lacking)
+
+
 def run_suite(root: Path, testee: Testee, only: str, without: set[str]) -> list[Result]:
     cases, results = load_cases(root)
     known = known_failures(root)
     results += [Result(i, "fail", "in known-failures.txt, but no case") for i in sorted(known - {case.id for case in cases})]
-    traits = {trait for case in cases for trait in case.traits}
+    traits = {trait for case in cases for trait in needed(case)}
     results += [Result(trait, "fail", "is no profile or flag of any case") for trait in sorted(without - traits)]
-    chosen = [case for case in cases if fnmatchcase(case.id, only) and not case.traits & without]
+    chosen = []
+    for case in cases:
+        asked = case if not needed(case) & without else lacking(case, without)
+        if asked and fnmatchcase(case.id, only):
+            chosen.append(asked)
     if cases and not chosen:
         results.append(Result(only, "fail", "matches no case"))
     return results + [judge(case, testee, case.id in known) for case in chosen]
@@ -299,7 +329,7 @@ def main(arguments: list[str], root: Path) -> int:
     parser.add_argument("--testee", metavar="CMD", help="command line of the decoder (default: decoder.py, beside this file)")
     parser.add_argument("--only", metavar="GLOB", default="*", help="run the cases whose id matches, as 'rigid/*'")
     parser.add_argument("--without", metavar="NAME", action="append", default=[],
-                        help="leave out the cases with this flag or profile, as 'layered' (may be repeated)")
+                        help="leave out the cases with this flag, profile or component, as 'layered' (may be repeated)")
     parser.add_argument("--json", action="store_true", help="print the results as one JSON object, the counts on standard error")
     parser.add_argument("--unpack", metavar="DIR", type=Path, help="write every input and answer as a file of its own, and run nothing")
     options = parser.parse_args(arguments)
@@ -307,7 +337,7 @@ def main(arguments: list[str], root: Path) -> int:
         if options.unpack:
             print(f"{unpack(root, options.unpack)} cases written to {options.unpack}")
             return 0
-        results = run_suite(root, make_testee(options.testee), options.only, set(options.without))
+        results = run_suite(root, make_testee(options.testee, set(options.without)), options.only, set(options.without))
     except (OSError, ValueError, KeyError) as error:
         print(f"run.py: {error}", file=sys.stderr)
         return 2

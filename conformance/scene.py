@@ -9,6 +9,7 @@ from typing import NamedTuple, Optional
 
 import deformable_basis
 import deformable_clusters
+import thesis_mesh
 from conventions import ONE, STR_5, STR_5_VARINT, Cursor, require, text
 from deformable_header import THESIS, DeformableObject, read_deformable_objects
 from elastic_header import read_elastic_bodies
@@ -16,7 +17,7 @@ from elastic_step import is_stable
 
 
 class Limits(NamedTuple):
-    """What this decoder accepts at most (R-STR-14, R-STR-18, R-STR-21, R-STR-24, R-FIL-4, R-PKT-1)."""
+    """What this decoder accepts (R-STR-14, R-STR-18, R-STR-21, R-STR-24, R-FIL-4, R-PKT-1)."""
     objects: int = 4096
     body_size: int = 1 << 20
     packet_size: int = 1 << 20
@@ -25,6 +26,7 @@ class Limits(NamedTuple):
     state_bytes: int = 1 << 28                              # R-STR-18
     basis_work: int = 1 << 22                               # R-STR-21
     body_work: int = 1 << 30                                # R-STR-24
+    thesis: bool = True                                     # component thesis (chapter 85)
 
 
 MAGIC = b"\x89TCT"
@@ -154,7 +156,8 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(object_count * SMALLEST_OBJECT <= body.left(), *STR_5)
     scene.objects = [read_object(body) for _ in range(object_count)]
     if flags & HAS_DEFORMABLES:
-        scene.deformables = read_deformable_objects(body, limits.objects - object_count, limits.vertices, limits.triangles)
+        scene.deformables = read_deformable_objects(body, limits.objects - object_count, limits.vertices, limits.triangles,
+                                                   limits.thesis)
     if flags & HAS_LOADS:
         scene.loads = LoadDeclaration(*body.take(2, STR_5))
         require(scene.moving() and scene.loads.force_exp <= 20 and scene.loads.users <= 64, "invalid", "R-STR-19")
@@ -215,7 +218,7 @@ def state_bytes(scene: Declaration) -> int:
         per_vertex = 12 + (12 if item.layered else 0) + (12 if item.fade > 0 else 0)
         total += states * (per_vertex * len(item.rest) + 48 * item.mode_count)
         if item.profile == THESIS:
-            total += (states + 2 if item.models_kept else 2) * 4 * (254 + (1 << item.quant_bits))
+            total += thesis_mesh.models_bytes(item, states)
     return total
 
 

@@ -14,7 +14,7 @@ from decoder import SceneDecoder
 from deformable_decoder import DeformableDecoder
 from device_path import DevicePath, device_scene
 from rigid import RigidDecoder
-from scene import THESIS, Declaration, read_declaration
+from scene import THESIS, Declaration, Limits, read_declaration
 
 PREVIOUS = 0                                                # policies of baselines
 MOST_HELD, BYTES_HELD, LONGEST_HELD = 1024, 1 << 16, 2_000_000
@@ -76,6 +76,7 @@ class Epoch:
         self.policy = PREVIOUS
         self.held: dict[int, tuple[int, bytes]] = {}        # packets of rigid objects that miss their baseline: when they came
         self.path: Optional[DevicePath] = None              # of the device, where it moves objects
+        self.limits = Limits()                              # of the declaration
         self.own: Optional[RigidDecoder] = None             # its packets
 
     def extend(self, value: int) -> int:
@@ -173,7 +174,7 @@ class Epoch:
             return False
         declaration = b"".join(self.pieces[i] for i in sorted(self.pieces))
         require(fnv1a(declaration) == self.digest, "checksum", "R-SES-10")
-        self.scene, _ = read_declaration(declaration)
+        self.scene, _ = read_declaration(declaration, self.limits)
         self.decoders = SceneDecoder(self.scene)
         self.largest = largest_packet(self.scene)
         return True
@@ -305,8 +306,9 @@ class Epoch:
 class Client:
     """State is closed, joining, receiving or live. `device(number)` gives the packet of the device for a datagram of that number."""
 
-    def __init__(self, nonce: int, device: Optional[Callable[[int], bytes]] = None, token: int = 0, now: int = 0):
-        self.nonce, self.device, self.opened_at = nonce, device, now
+    def __init__(self, nonce: int, device: Optional[Callable[[int], bytes]] = None, token: int = 0, now: int = 0,
+                 limits: Limits = Limits()):
+        self.nonce, self.device, self.opened_at, self.limits = nonce, device, now, limits
         self.state, self.reason = "joining", 0
         self.leaving = b""
         self.epoch: Optional[Epoch] = None
@@ -348,7 +350,7 @@ class Client:
         if nonce != self.nonce or self.state == "closed" or again:
             return
         self.epoch = Epoch(epoch, client, serial, size, digest, start)
-        self.epoch.heard_at = now
+        self.epoch.heard_at, self.epoch.limits = now, self.limits
         self.state, self.keep_alive_at, self.first_live, self.rejoins = "receiving", 0, None, False
         self.token = epoch if serial == 0 else self.token
         if size > HEADER_LIMIT:
@@ -455,8 +457,8 @@ def sent_by(datagrams: list[bytes]) -> dict:
     return {name: out[name] for name in ("acknowledges", "hashes", "says") if name in out}
 
 
-def lines(script: str) -> Iterator[dict]:
-    """A line for each line of a script: what the end that it is for makes of it, and what it sends then."""
+def lines(script: str, limits: Limits = Limits()) -> Iterator[dict]:
+    """A line for each line of a script: what the end that it is for makes of it, and what it sends then. `limits` are a client's."""
     if '"serve":' in script.split("\n", 1)[0]:
         import session_server                               # which imports this module
         yield from session_server.lines(script)
@@ -469,7 +471,7 @@ def lines(script: str) -> Iterator[dict]:
             client.pass_time(step["at"])
         try:
             if "join" in step:
-                client = Client(int(step["join"], 16), now=step["at"])
+                client = Client(int(step["join"], 16), now=step["at"], limits=limits)
             elif "heard" in step:
                 client.handle(step["at"], bytes.fromhex(step["heard"]))
             else:

@@ -14,6 +14,7 @@
 #include <tactus/scene/scene_syntax.h>
 #include <tactus/session/datagram.h>
 #include <tactus/session/session_server.h>
+#include <tactus/thesis/if_built.h>
 #include "conformance/session_report.h"
 #include "conformance/session_script.h"
 
@@ -79,7 +80,7 @@ class ServerScript {
   static SharedScene scene_of(std::string_view text) {
     const auto bytes = bytes_of(text);
     if (!bytes) return nullptr;
-    auto parsed = parse_scene(*bytes);
+    auto parsed = parse_scene(*bytes, {.thesis = thesis_if_built()});
     return parsed ? std::move(parsed->scene) : nullptr;
   }
   /// Of all that the server has sent to this address.

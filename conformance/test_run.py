@@ -14,13 +14,16 @@ import tempfile
 import unittest
 import zlib
 from pathlib import Path
+from typing import Optional
 from unittest import mock
 
+import decoder
 import differential
 import run
 from client import Device
+from conventions import StreamError
 from datagram import STATE
-from scene import MAGIC, VERSION, read_declaration
+from scene import MAGIC, VERSION, Limits, read_declaration
 from session import Epoch
 from session_server import ServedEpoch
 
@@ -39,6 +42,16 @@ HEADER_LINE = ('{"header":{"version":2,"profile":0,"tick_rate":1000,"grid":[22,1
 VALID_REPLY = HEADER_LINE + '{"end":{"complete":false,"packets":0,"state":"cbf29ce484222325"}}\n'
 WITH_FLAG = VALID[:7] + b"\x80" + VALID[8:]  # the last that would get a meaning
 WITH_UNKNOWN_RECORD = VALID + with_crc(b"\x05\x00")
+
+
+def mesh_scene(profile: int, parameters: bytes, rest: bytes) -> bytes:
+    """The scene with one deformable object of one vertex: `parameters` follow its rings, `rest` its last rest position."""
+    body = BODY + bytes([1, profile, 1]) + b"m\0" + parameters + b"\x01\0\0\0\0" + rest
+    return with_crc(MAGIC + struct.pack("<BBHI", VERSION, 0, 1, len(body)) + body)
+
+
+THESIS_SCENE = mesh_scene(0, b"\x08\0", b"")
+MAIN_SCENE = mesh_scene(1, struct.pack("<IBHB", 256, 0, 0, 1), b"\0")
 
 
 class RunnerTest(unittest.TestCase):
@@ -283,6 +296,44 @@ sys.exit(reply.returncode)""")
         self.expect(0, "1 passed, 0 failed, 0 skipped", "--without", "order", "--without", "main")
         self.expect(1, "3 passed, 1 failed, 0 skipped", "--without", "other")
 
+    def test_without_component_thesis(self) -> None:
+        """What needs it is left out, but its valid scenes: to those the answer must be R-DEF-2."""
+        def reply(data: bytes, mode: Optional[str] = None) -> str:
+            return "".join(json.dumps(line, separators=(",", ":")) + "\n" for line in decoder.lines(data, mode))
+
+        self.cases += [{**self.case("004-thesis", THESIS_SCENE, reply(THESIS_SCENE)), "profile": ["thesis"]},
+                       {**self.case("005-main", MAIN_SCENE, reply(MAIN_SCENE)), "profile": ["main"]},
+                       {**self.case("006-cut", THESIS_SCENE[:-1], "", "truncated", "R-STR-5"), "profile": ["thesis"]},
+                       {**self.case("007-linear", VALID, reply(VALID, "linear")), "args": ["--replica", "linear"]},
+                       {**self.case("008-none", VALID, reply(VALID, "none")), "args": ["--replica", "none"]}]
+        self.write_lists(self.cases)
+        whole = shlex.join([sys.executable, str(HERE / "decoder.py")])
+        self.expect(0, "8 passed, 0 failed, 0 skipped")
+        self.expect(0, "6 passed, 0 failed, 0 skipped", "--without", "thesis")
+        self.expect(0, "6 passed, 0 failed, 0 skipped", "--without", "thesis", "--testee", f"{whole} --without thesis")
+        out = self.expect(1, "5 passed, 1 failed, 0 skipped", "--without", "thesis", "--testee", whole)
+        self.assertIn("scene/004-thesis: accepted; must be rejected with unsupported R-DEF-2", out)
+        self.expect(0, "4 passed, 0 failed, 0 skipped", "--without", "thesis", "--without", "main", "--testee", whole)
+        with contextlib.redirect_stderr(io.StringIO()) as err, self.assertRaises(SystemExit) as usage:
+            decoder.main(["--without", "thesis", "--replica", "linear"])
+        self.assertEqual(usage.exception.code, 2)
+        self.assertIn("--replica linear needs component thesis", err.getvalue())
+
+    def test_vectors_without_component_thesis(self) -> None:
+        """Of the published vectors: what the runner asks of a decoder that lacks it, and what the second decoder answers."""
+        cases, faults = run.load_cases(HERE)
+        self.assertEqual(faults, [])
+        needing = [case for case in cases if "thesis" in run.needed(case)]
+        asked = [asked for case in needing if (asked := run.lacking(case, {"thesis"}))]
+        self.assertEqual({case.id.split("/")[0] for case in needing}, {"thesis", "deformable", "packet", "load", "scene"})
+        self.assertTrue({case.id for case in cases if case.id.startswith("thesis/")} <= {case.id for case in needing})
+        self.assertGreater(len(asked), 20)
+        for case in asked:
+            with self.assertRaises(StreamError) as refused:
+                decoder.File(run.read_input(case), Limits(thesis=False))
+            self.assertEqual({"errc": refused.exception.errc, "rule": refused.exception.rule}, case.error, case.id)
+            self.assertEqual(run.expected_lines(case), [])
+
     def test_known_failures(self) -> None:
         accept_all = self.command(f"print({VALID_REPLY!r}, end='')")
         known = self.root / "known-failures.txt"
@@ -311,6 +362,12 @@ class DifferentialTest(unittest.TestCase):
         for more in ([], ["--sessions"]):
             status, counts = self.compare(shlex.join([sys.executable, str(HERE / "decoder.py")]), *more)
             self.assertEqual((status, counts.split(", ")[-1]), (0, "0 differences"))
+
+    def test_decoders_without_component_thesis(self) -> None:
+        lacks = shlex.join([sys.executable, str(HERE / "decoder.py"), "--without", "thesis"])
+        for more in ([], ["--sessions"]):
+            self.assertEqual(self.compare(lacks, "--without", "thesis", *more)[0], 0)
+        self.assertEqual(self.compare(lacks, "--only", "thesis/*")[0], 1)
 
     def test_wrong_words_are_seen(self) -> None:
         wrong = "import sys, decoder; write = sys.stdout.write; " \

@@ -13,21 +13,38 @@
 #include "conformance/report.h"
 #include "conformance/session_report.h"
 
+namespace {
+
+constexpr const char* kUsage =
+    "usage: testee [--without thesis] [--replica none|device|linear|hermite|blending|playout] <stream.tct\n"
+    "       testee [--without thesis] --session <datagrams.script\n";
+
+std::optional<tactus::Interpolation> client_of(std::string_view kind) {
+  using tactus::Interpolation;
+  if (kind == "none" || kind == "device") return Interpolation::none;
+  if (kind == "linear") return Interpolation::linear;
+  if (kind == "hermite") return Interpolation::hermite;
+  if (kind == "blending") return Interpolation::blending;
+  if (kind == "playout") return Interpolation::playout;
+  return {};
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  std::optional<tactus::Interpolation> replica;
-  const std::string_view kind = argc == 3 && std::string_view(argv[1]) == "--replica" ? argv[2] : "";
-  const bool device = kind == "device";
-  if (kind == "none" || device) replica = tactus::Interpolation::none;
-  if (kind == "linear") replica = tactus::Interpolation::linear;
-  if (kind == "hermite") replica = tactus::Interpolation::hermite;
-  if (kind == "blending") replica = tactus::Interpolation::blending;
-  if (kind == "playout") replica = tactus::Interpolation::playout;
-  const bool session = argc == 2 && std::string_view(argv[1]) == "--session";
-  if (argc != 1 && !replica && !session) {
-    std::fputs(
-        "usage: testee [--replica none|device|linear|hermite|blending|playout] <stream.tct\n       testee --session "
-        "<datagrams.script\n",
-        stderr);
+  tactus::conformance::TesteeOptions options;
+  std::vector<std::string_view> words(argv + 1, argv + argc);
+  if (words.size() >= 2 && words[0] == "--without" && words[1] == "thesis") {
+    options.thesis = nullptr;
+    words.erase(words.begin(), words.begin() + 2);
+  }
+  if (words.size() == 2 && words[0] == "--replica") {
+    options.replica = client_of(words[1]);
+    options.device = words[1] == "device";
+  }
+  const bool session = words.size() == 1 && words[0] == "--session";
+  if (!words.empty() && !options.replica && !session) {
+    std::fputs(kUsage, stderr);
     return 2;
   }
   std::ios::sync_with_stdio(false);
@@ -38,7 +55,7 @@ int main(int argc, char** argv) {
   }
   const std::vector<char> file{std::istreambuf_iterator<char>(std::cin), {}};
   const auto done =
-      tactus::conformance::report({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, replica, device, std::cout);
+      tactus::conformance::report({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, options, std::cout);
   if (!done) tactus::conformance::report_error(tactus::errc_name(done.error().code), done.error().rule, std::cout);
   return done ? 0 : 1;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// An engine with 60 ticks per second, a left-handed world with y up, and objects that come and go. The scene declares slots, all parked at one
-/// position; what a slot shows is the engine's own affair. A body that leaves the world or breaks (NaN) is held where it was last, and the others go
-/// on.
+/// An engine's loop at 60 Hz, with a left-handed world, y up, and bodies that come and go. The scene declares slots, all parked at one position; which
+/// body a slot shows is the engine's own affair. A body that leaves the world or breaks (NaN) is shown where it was last until it is good again, and
+/// the others go on.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -14,32 +15,62 @@
 
 namespace {
 
-constexpr int kSlots = 8, kTicks = 600;  // 10 s
+constexpr std::size_t kSlots = 8;
+constexpr int kTicks = 600;  // 10 s
 const EnginePose kParked{{0, -100, 0}, {0, 0, 0, 1}};
 
 struct Body {  // as an engine has it
-  int slot = -1;
-  EnginePose pose;
+  std::string name{};
+  EnginePose pose{};
   Float3 velocity{}, angular_velocity{};  // units per second, rad/s
 };
 
-/// A ball rolls along x for 8 s; from 2 s to 6 s there is another one, which breaks at 5 s.
+/// A ball rolls along x for 8 s. From 2 s to 6 s there is a drone, which breaks at 5 s for half a second: meanwhile the ball hits a wall and rolls
+/// back. A crate comes at 7 s.
 std::vector<Body> bodies_at(int tick) {
   const float t = static_cast<float>(tick) / 60;
   std::vector<Body> bodies;
-  if (tick < 480) bodies.push_back({0, {{t, 0.5f, 0}, {0, 0, 0, 1}}, {1, 0, 0}, {}});
+  const bool comes_back = tick >= 312;
+  if (tick < 480)
+    bodies.push_back({"ball", {{comes_back ? 10.4f - t : t, 0.5f, 0}, {0, 0, 0, 1}}, {comes_back ? -1.0f : 1.0f, 0, 0}, {}});
   if (tick >= 120 && tick < 360) {
-    const float height = tick < 300 ? 3 - 0.5f * (t - 2) : std::numeric_limits<float>::quiet_NaN();
-    bodies.push_back({3, {{0, height, 2}, {0, std::sin(t / 2), 0, std::cos(t / 2)}}, {0, -0.5f, 0}, {0, 1, 0}});
+    const bool breaks = tick >= 300 && tick < 330;
+    const float height = breaks ? std::numeric_limits<float>::quiet_NaN() : 3 - 0.5f * (t - 2);
+    bodies.push_back({"drone", {{0, height, 2}, {0, std::sin(t / 2), 0, std::cos(t / 2)}}, {0, -0.5f, 0}, {0, 1, 0}});
   }
+  if (tick >= 420) bodies.push_back({"crate", {{2, 0.5f, 2}, {0, 0, 0, 1}}, {}, {}});
   return bodies;
 }
+
+/// Which body each slot shows; "": none.
+struct Slots {
+  std::vector<std::string> names = std::vector<std::string>(kSlots);
+
+  std::size_t of(const std::string& body) const {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), body) - names.begin());
+  }
+  /// Bodies that are new take the first free slot, and those that are gone leave theirs.
+  void update(int tick, const std::vector<Body>& bodies) {
+    for (std::size_t i = 0; i < kSlots; ++i) {
+      const auto is_here = [&](const Body& body) { return body.name == names[i]; };
+      if (names[i].empty() || std::any_of(bodies.begin(), bodies.end(), is_here)) continue;
+      std::printf("tick %d: %s leaves slot %zu\n", tick, names[i].c_str(), i);
+      names[i].clear();
+    }
+    for (const Body& body : bodies) {
+      if (of(body.name) != kSlots) continue;
+      const std::size_t i = of("");  // an engine asks whether there is one
+      names[i] = body.name;
+      std::printf("tick %d: %s takes slot %zu\n", tick, body.name.c_str(), i);
+    }
+  }
+};
 
 }  // namespace
 
 int main() {
   tactus::SceneBuilder builder(60);  // ticks per second
-  for (int i = 0; i < kSlots; ++i) builder.rigid("slot " + std::to_string(i), pose_from_engine(kUnity, kParked));
+  for (std::size_t i = 0; i < kSlots; ++i) builder.rigid("slot " + std::to_string(i), pose_from_engine(kUnity, kParked));
   const auto scene = builder.build();
   if (!scene) return std::printf("%s: %s\n", scene.error().object.c_str(), describe(scene.error())), 1;
   tactus::SenderOptions options;
@@ -53,23 +84,26 @@ int main() {
   int packets = 0, held = 0;
   std::size_t bytes = 0;
   double worst = 0;  // [m]
+  Slots slots;
+  bool was_held = false;
   for (int tick = 0; tick < kTicks; ++tick) {
-    std::vector<bool> is_used(kSlots);
-    for (const Body& body : bodies_at(tick)) {
-      const auto slot = static_cast<std::size_t>(body.slot);
-      is_used[slot] = true;
-      truth[slot] = {pose_from_engine(kUnity, body.pose), from_engine(kUnity, body.velocity),
-                     angular_from_engine(kUnity, body.angular_velocity)};
-    }
+    const std::vector<Body> bodies = bodies_at(tick);
+    slots.update(tick, bodies);
+    for (const Body& body : bodies)
+      truth[slots.of(body.name)] = {pose_from_engine(kUnity, body.pose), from_engine(kUnity, body.velocity),
+                                    angular_from_engine(kUnity, body.angular_velocity)};
     for (std::size_t i = 0; i < kSlots; ++i)
-      if (!is_used[i]) truth[i] = parked;  // rests there, and costs nothing
+      if (slots.names[i].empty()) truth[i] = parked;  // rests there, and costs nothing
 
     const auto sent = sender->encode(tick, {.objects = truth});
     if (!sent) return std::printf("tick %d: %s\n", tick, describe(sent.error())), 1;
     for (const tactus::HeldPart& part : sender->held()) {  // mostly none
-      ++held;
-      if (part.since == tick) std::printf("tick %d: %s is held: %s\n", tick, name_of(**scene, part).data(), describe(part));
+      const std::string& body = slots.names[part.index];
+      held += body == "drone";
+      if (part.since == tick) std::printf("tick %d: %s is held: %s\n", tick, body.c_str(), describe(part));
     }
+    if (was_held && sender->held().empty()) std::printf("tick %d: all bodies are good again\n", tick);
+    was_held = !sender->held().empty();
     for (const tactus::Packet& packet : *sent) {
       ++packets, bytes += packet.bytes.size();
       if (!receiver->push(packet.number, packet.bytes)) return 1;
@@ -81,7 +115,8 @@ int main() {
       worst = std::max(worst, tactus::norm(pose_from_engine(kUnity, shown).position - wanted[i].pose.position));
     }
   }
-  std::printf("%d packets, %zu bytes in 10 s; held for %d ticks; at most %.2f mm off\n", packets, bytes, held, 1e3 * worst);
+  std::printf("%d packets, %zu bytes in 10 s; the drone is held for %d ticks; at most %.2f mm off\n", packets, bytes, held,
+              1e3 * worst);
 
   // What an engine turns is turned here: a quarter turn about its up axis, clockwise as seen from above in a left-handed world.
   const float s = std::sqrt(0.5f);
@@ -98,5 +133,5 @@ int main() {
     if (off > 1e-5 || std::abs(tactus::norm(from_engine(e, ahead)) - 1) > 1e-6) return std::printf("axes: %g off\n", off), 1;
   }
   std::printf("poses of three engines come back as they were\n");
-  return worst <= 0.0051 ? 0 : 1;
+  return worst <= 0.0051 && held == 30 ? 0 : 1;  // the ball turned round while the drone was held
 }

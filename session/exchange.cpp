@@ -28,7 +28,7 @@ constexpr std::uint64_t kInitialAckTimeout = 250'000;  // [us] while no round tr
 
 std::size_t largest_packet(const Scene& scene) {
   std::size_t out = scene.moving().empty() ? 0 : max_rigid_packet(scene);
-  for (const DeformableObject& object : scene.deformables) out = std::max(out, max_packet(object));
+  for (const DeformableObject& object : scene.deformables) out = std::max(out, max_packet(scene, object));
   if (scene.loads) out = std::max(out, max_load_packet(scene));
   return out + 1;  // the number of its substream
 }

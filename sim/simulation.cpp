@@ -49,8 +49,8 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   ServerOptions of_server{options.seed, {}, options.mesh_noise, options.estimate_every, options.parts};
   const bool is_remote = options.channel && options.channel->network;
   if (options.channel)
-    of_server.codec =
-        ServerCodec{options.channel->sender, options.channel->coding, is_remote, options.channel->client_model_scale};
+    of_server.codec = ServerCodec{options.channel->sender, options.channel->coding, is_remote,
+                                  options.channel->client_model_scale, options.channel->limits};
   auto impl = std::make_unique<Impl>();
   impl->seed = options.seed;
   TACTUS_TRY(impl->server, Server::create(scene, of_server));

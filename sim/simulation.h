@@ -37,6 +37,7 @@ struct ChannelOptions {
   SenderOptions sender;
   ReplicaOptions replica;
   TraceCoding coding{};           ///< of the scene's objects
+  DecodeLimits limits{};          ///< of clients
   double client_model_scale = 1;  ///< with a network: as ServerCodec::client_model_scale
   const Scene* own = nullptr;     ///< what clients simulate themselves, if they do; null: the scene
   bool timed = false;             ///< with a network: client_costs() are measured, about 1 us per tick and user

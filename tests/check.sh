@@ -76,7 +76,7 @@ consumer() { # BUILD_DIR
   rm -rf "$scratch"
   cmake --install "$1" --prefix "$prefix" >/dev/null
   check_headers "$prefix/include/tactus"
-  for component in codec session seal modes surface fem sim falcon hid c c_trace; do
+  for component in codec thesis session seal modes surface fem sim falcon hid c c_trace; do
     installed "$component" || { check_absent "$component"; continue; }
     cmake -S tests/consumer/installed -B "$scratch/$component" -DCOMPONENT="$component" -DCMAKE_PREFIX_PATH="$prefix"
     cmake --build "$scratch/$component"
@@ -117,7 +117,7 @@ installed() { # COMPONENT
 codec_only() {
   build codec-only
   consumer "$PWD/build/codec-only"
-  bindings=$(find build/codec-only/consumer/prefix -name '*.so*' -o -name 'libtactus_session*' -o -path '*/tactus/session/*' -o -name 'tactus_session.h' -o -path '*/tactus/c.cmake' -o -path '*/dist-packages/*')
+  bindings=$(find build/codec-only/consumer/prefix -name '*.so*' -o -name 'libtactus_session*' -o -path '*/tactus/session/*' -o -name 'libtactus_thesis*' -o -path '*/tactus/thesis/*' -o -name 'tactus_session.h' -o -path '*/tactus/c.cmake' -o -path '*/dist-packages/*')
   [ -z "$bindings" ] || die "the codec alone comes with $bindings"
   needed=$(readelf -d build/codec-only/consumer/codec/consumer | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | sort | tr '\n' ' ')
   echo "run-time libraries: $needed"
@@ -138,7 +138,7 @@ exact() { # [all]
       esac
       dir=build/exact/$compiler$(echo "$flags" | tr -d ' ')
       cmake --preset codec-only -B "$dir" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_C_COMPILER="$(echo "$compiler" | sed "s,g++,gcc,; s,clang++,clang,")" -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_BUILD_TYPE=None \
-        -DTACTUS_WERROR=OFF -DTACTUS_WITH_SESSION=ON -DTACTUS_WITH_TESTS=ON >/dev/null
+        -DTACTUS_WERROR=OFF -DTACTUS_WITH_THESIS=ON -DTACTUS_WITH_SESSION=ON -DTACTUS_WITH_TESTS=ON >/dev/null
       cmake --build "$dir" --target tactus_golden -j "$jobs" >/dev/null
       "$dir/tests/golden/tactus_golden" >"$dir/hashes.txt"
       diff -u tests/golden/hashes.txt "$dir/hashes.txt" || die "$compiler $flags computes other bits"
@@ -246,7 +246,7 @@ target_include_directories(tl::expected INTERFACE ${CMAKE_CURRENT_LIST_DIR}/incl
   echo 'add_library(GTest::gtest INTERFACE IMPORTED)
 add_library(GTest::gtest_main INTERFACE IMPORTED)' >"$dir/packages/GTestConfig.cmake"
   cmake --preset codec-only -B "$dir" --toolchain "$PWD/tests/windows/mingw.cmake" -Dtl-expected_DIR="$dir/packages" \
-    -DGTest_DIR="$dir/packages" -DTACTUS_WITH_SESSION=ON -DTACTUS_WITH_TESTS=ON -DTACTUS_WITH_CONFORMANCE=ON
+    -DGTest_DIR="$dir/packages" -DTACTUS_WITH_THESIS=ON -DTACTUS_WITH_SESSION=ON -DTACTUS_WITH_TESTS=ON -DTACTUS_WITH_CONFORMANCE=ON
   cmake --build "$dir" --target tactus_golden testee -j "$jobs"
   export WINEPREFIX="$dir/wine" WINEDEBUG=-all
   "$wine" "$dir/tests/golden/tactus_golden.exe" | tr -d '\r' >"$dir/hashes.txt"

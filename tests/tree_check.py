@@ -26,14 +26,14 @@ SHARED = {"base", "mesh"}  # folders of codec/ that are not subjects of the spec
 # basis and the elastic bodies that both ends compute are binary64 in a written order.
 FLOATS = {"base/elementary", "base/geometry", "base/quantise", "base/tri_mesh", "client/replica", "client/stiffness_reduction",
           "deformable/deformable_encoder", "deformable/displacement", "deformable/encoder_fit",
-          "deformable/motion_clusters", "deformable/thesis_encoder", "deformable/vertex_coder", "elastic/driven_shape",
+          "deformable/motion_clusters", "deformable/vertex_coder", "elastic/driven_shape",
           "elastic/elastic_solver", "elastic/elastic_touch", "load/load_encoder", "load/load_state", "mesh/basis", "mesh/cluster_basis",
           "mesh/deformable_object", "mesh/elastic_elements", "mesh/kriging", "mesh/spring_basis", "packet/sender_policy",
           "packet/substream_encoder", "player", "receiver", "rigid/encoder_choices", "rigid/level_of_detail", "rigid/pose_thresholds", "rigid/rigid_encoder", "rigid/rigid_state",
           "rigid/rigid_truth", "rigid/rigid_work", "rigid/trigger",
           "scene/elastic_syntax", "scene/scene_builder", "scene/scene_objects", "sender", "session/congestion", "session/device_signal", "session/exchange",
           "session/server_connection", "session/session_client", "session/session_options", "session/session_server",
-          "signal/force_signal"}
+          "thesis/force_signal", "thesis/interpolation", "thesis/thesis_encoder", "thesis/thesis_mesh"}
 # Everything that is the operating system's stands in these files, one per need; the others are C++ alone. The codec, the traces and
 # the metrics are not among them; of the simulation only what runs the program that fills meshes.
 SYSTEM = {
@@ -69,11 +69,7 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "codec/deformable/main_state": "deformable_layers",
     "codec/deformable/main_syntax": "deformable_encoder",
     "codec/deformable/motion_clusters": "mesh_basis",
-    "codec/deformable/thesis_decoder": "deformable_decoder",
-    "codec/deformable/thesis_encoder": "deformable_encoder",
-    "codec/deformable/thesis_syntax": "deformable_encoder",
     "codec/elastic": "elastic",
-    "codec/file": "packet",
     "codec/mesh_support": "deformable_decoder",
     "codec/load/load_decoder": "load",
     "codec/load/load_encoder": "load",
@@ -83,7 +79,6 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "codec/mesh/elastic_elements": "elastic",
     "codec/mesh/kriging": "mesh_graph",
     "codec/mesh/spring_basis": "mesh_basis",
-    "codec/packet": "packet",
     "codec/rigid/pose_thresholds": "rigid",
     "codec/rigid/rigid_decoder": "rigid",
     "codec/rigid/rigid_encoder": "rigid",
@@ -93,6 +88,10 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "codec/scene/elastic_syntax": "scene_elastic",
     "codec/scene/scene": "scene_syntax",
     "codec/scene/scene_objects": "scene_syntax",
+    "codec/thesis/thesis": "thesis_mesh",
+    "codec/thesis/thesis_decoder": "thesis_mesh",
+    "codec/thesis/thesis_encoder": "thesis_mesh",
+    "codec/thesis/thesis_syntax": "thesis_mesh",
     "device/falcon/falcon_frame": "falcon_kinematics",
     "device/falcon/falcon_usb": "falcon_device",
     "device/falcon/libusb_library": "device",

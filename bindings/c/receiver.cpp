@@ -55,6 +55,12 @@ Result<ReceiverOptions> options_of(const tactus_receiver_options* options) noexc
                          .limits = limits};
 }
 
+static Outcome skip(Receiver& receiver, std::uint64_t number) noexcept {
+  if (!is_number(number)) return fail(Errc::invalid_argument, "R-API-5");
+  receiver.skip_number(number);
+  return TACTUS_OK;
+}
+
 tactus_packet_info info_of(const Scene& scene, const DecodedPacket& packet) noexcept {
   Reason reason = Reason::request;
   for (const RigidUpdate& update : packet.updates) reason = std::max(reason, update.reason);
@@ -104,6 +110,7 @@ tactus_status tactus_receiver_push(tactus_receiver* receiver, uint64_t number, c
     TACTUS_TRY(Receiver * to, receiver_of(receiver));
     if (!receiver->own) return refuse();  // a player or a session pushes to its own
     TACTUS_TRY(const auto bytes, span_of(packet, size));
+    if (packet == nullptr) return skip(*to, number);
     if (info != nullptr) TACTUS_CHECK(check_answer(info));
     std::optional<std::int64_t> applied;
     if (now != TACTUS_PACKET_TICK) {

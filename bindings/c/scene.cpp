@@ -8,6 +8,7 @@
 
 #include <tactus/packet/substream.h>
 #include <tactus/scene/scene_syntax.h>
+#include <tactus/thesis/if_built.h>
 
 #include "bounds.h"
 #include "handles.h"
@@ -73,7 +74,8 @@ Result<DecodeLimits> limits_of(const tactus_limits* limits) noexcept {
                       .vertices = l.vertices,
                       .triangles = l.triangles,
                       .state_bytes = l.state_bytes,
-                      .basis_work = l.basis_work};
+                      .basis_work = l.basis_work,
+                      .thesis = thesis_if_built()};
 }
 
 std::uint32_t kind_of(const Scene& scene, std::size_t substream) noexcept {

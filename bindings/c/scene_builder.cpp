@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/deformable/motion_clusters.h>
 #include <tactus/scene/scene_builder.h>
+#include <tactus/thesis/if_built.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,7 @@
 struct tactus_scene_builder {
   tactus::SceneBuilder builder;
   std::string culprit{}, detail{};
-  tactus::DecodeLimits limits{};
+  tactus::DecodeLimits limits{.thesis = tactus::thesis_if_built()};
 };
 
 namespace tactus::c {

@@ -85,7 +85,7 @@ tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const ta
     TACTUS_CHECK(check_answer(encoded));
     sender->answer.clear();
     TACTUS_TRY(const Truth taken, sender->truth.of(truth));
-    TACTUS_TRY(const auto packets, sender->sender.encode(tick, taken));
+    TACTUS_TRY(const auto packets, sender->sender.encode(tick, taken, sender->truth.number()));
     sender->answer.take(*sender->sender.scene(), tick, packets, sender->sender.held());
     answer(encoded, sender->answer.given());
     return TACTUS_OK;

@@ -154,6 +154,7 @@ tactus_status tactus_server_submit(tactus_server* server, uint64_t now, int64_t 
     if (server == nullptr) return refuse();
     if (encoded != nullptr) TACTUS_CHECK(check_answer(encoded));
     TACTUS_TRY(const Truth taken, server->truth.of(truth));
+    if (server->truth.number()) return refuse();
     TACTUS_TRY(SessionServer * to, at(server, now));
     TACTUS_CHECK(to->submit(now, tick, taken));
     if (encoded == nullptr) return TACTUS_OK;

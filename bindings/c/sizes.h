@@ -55,7 +55,8 @@ TACTUS_SIZED(tactus_driven_physics, TACTUS_UP_TO(tactus_driven_physics, damping)
 TACTUS_SIZED(tactus_elastic_physics, TACTUS_UP_TO(tactus_elastic_physics, friction),
              TACTUS_UP_TO(tactus_elastic_physics, sub_steps));
 TACTUS_SIZED(tactus_sender_options, TACTUS_UP_TO(tactus_sender_options, load));
-TACTUS_SIZED(tactus_truth, TACTUS_UP_TO(tactus_truth, load_count), TACTUS_UP_TO(tactus_truth, moved_count));
+TACTUS_SIZED(tactus_truth, TACTUS_UP_TO(tactus_truth, load_count), TACTUS_UP_TO(tactus_truth, moved_count),
+             TACTUS_UP_TO(tactus_truth, number));
 TACTUS_SIZED(tactus_event, TACTUS_UP_TO(tactus_event, bound_scale));
 TACTUS_SIZED(tactus_session_status, TACTUS_UP_TO(tactus_session_status, wrong_states), TACTUS_UP_TO(tactus_session_status, world),
              TACTUS_UP_TO(tactus_session_status, device));
@@ -97,7 +98,7 @@ tactus_status init(T* out, std::size_t size, const T& defaults) noexcept {
 }
 
 /// The caller's options, with the defaults where his struct does not reach; or all defaults.
-/// err  R-API-12 its size is that of no version, or an option of a later version is set
+/// err  R-API-12 its size is that of no version, or an option of a later version is set, or what is reserved
 template <class T>
 Result<T> given_or(const T* given, const T& defaults) noexcept {
   if (given == nullptr) return defaults;
@@ -108,6 +109,8 @@ Result<T> given_or(const T* given, const T& defaults) noexcept {
     return refuse();
   T out = defaults;
   std::memcpy(&out, bytes, std::min(size, sizeof(T)));
+  if constexpr (requires { out.reserved; })
+    if (out.reserved != 0) return refuse();
   return out;
 }
 

@@ -318,6 +318,8 @@ TACTUS_API void tactus_receiver_destroy(tactus_receiver* receiver); /* does noth
 TACTUS_API const tactus_scene* tactus_receiver_scene(const tactus_receiver* receiver);
 /* Decode a packet. Its number is not in its bytes: send both. A sender that restarts counts anew, so its packets go to a new receiver.
    in   number  of the packet, as its sender gave it: above 0, below 2^62
+        packet  NULL with size 0: the number came, and no packet of rigid objects has it, so that a client with
+                TACTUS_INTERPOLATION_PLAYOUT need not interpolate over it; info is not written
         now     the client's tick at which the replica applies it, or TACTUS_PACKET_TICK;  info  may be NULL
    err  R-API-5 no such number; its advice says how to react: R-PKT, R-RIG, R-DEF, R-RNG */
 TACTUS_API tactus_status tactus_receiver_push(tactus_receiver* receiver, uint64_t number, const uint8_t* packet, size_t size,

@@ -194,6 +194,9 @@ typedef struct tactus_truth {
      moves and is not named is not sent. */
   const uint32_t* moved;
   size_t moved_count;
+  /* Of the packets of this tick, above that of any packet before and below 2^62 - 1, as a transport numbers what it sends; a second packet of an
+     object has number + 1. 0: each substream counts on, from 1. A server of sessions numbers its packets itself: 0. */
+  uint64_t number;
 } tactus_truth;
 
 /* What of a truth breaks a rule. It does not stop the others: what it was before is coded, at rest, until it breaks none. */

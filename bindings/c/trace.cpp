@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include <tactus/scene/scene_syntax.h>
+#include <tactus/thesis/if_built.h>
 #include <tactus/trace/trace_scene.h>
 
 #include "bounds.h"
@@ -122,7 +123,7 @@ Result<std::vector<std::uint8_t>> declaration(const tactus_trace& trace, const t
                             .rigid = static_cast<RigidProfile>(coding.rigid_profile)}));
   builder.baselines(static_cast<std::uint8_t>(coding.baselines)).declare_bounds(rigid, deformable);
   if (coding.world_size != 0) builder.world_size(coding.world_size);
-  TACTUS_TRY(const SharedScene scene, std::move(builder).build());
+  TACTUS_TRY(const SharedScene scene, std::move(builder).build({.thesis = thesis_if_built()}));
   return write_scene(*scene);
 }
 

@@ -48,6 +48,8 @@ Result<Truth> TruthBuffer::of(const tactus_truth* truth) {
   for (const tactus_contact& contact : contacts) take(contact);
   for (std::size_t i = 0; i < shapes.size(); ++i) TACTUS_CHECK(take(shapes[i], shapes_[i]));
   if (t.load_count > 0) take_loads(t.loads);
+  number_.reset();
+  if (t.number != 0) number_ = t.number;
   Truth out{.objects = std::span(objects_).first(objects.size()),
             .contacts = contacts_,
             .deformables = std::span(shapes_).first(shapes.size()),

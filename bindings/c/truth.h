@@ -2,6 +2,8 @@
 /// The truth of a tick as the library takes it.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <tactus/sender.h>
@@ -18,6 +20,7 @@ class TruthBuffer {
   /// out  valid until the next call, and as long as the caller's shapes
   /// err  R-API-12 a null pointer; R-API-5 a wrong count
   Result<Truth> of(const tactus_truth* truth);
+  std::optional<std::uint64_t> number() const noexcept { return number_; }  ///< of its packets; nothing: they are counted
 
  private:
   void take(const tactus_contact& contact);
@@ -30,6 +33,7 @@ class TruthBuffer {
   std::vector<DeformableTruth> shapes_;
   std::vector<ObjectLoad> loads_;
   std::vector<Vec3> pushes_;  // of all loads
+  std::optional<std::uint64_t> number_;
 };
 
 /// What came of a truth, for the caller.

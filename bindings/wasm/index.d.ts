@@ -104,6 +104,8 @@ export class Receiver {
       in  number  as the sender gave it: above 0, at most Number.MAX_SAFE_INTEGER
           now     the client's tick at which the replica applies it; left out: the packet's own */
   push(number: number, packet: Uint8Array, now?: number | null): Packet;
+  /** This number came, and no packet of rigid objects has it: with "playout" the replica need not interpolate over it. */
+  skipNumber(number: number): void;
   /** Objects that the packet decoded last named. */
   updates(): {object: number; reason: Reason; level: number}[];
   /** Poses of all rigid objects as shown at a tick: x y z (m), w x y z of each. */

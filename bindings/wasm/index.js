@@ -233,13 +233,18 @@ export class Receiver {
     checkBytes(packet);
     const {memory} = this.#tactus;
     const applied = now === null ? -(2n ** 63n) : BigInt(now);  // TACTUS_PACKET_TICK
-    return memory.with(packet.length, (at) => {
+    return memory.with(Math.max(1, packet.length), (at) => {
       memory.bytes(at, packet.length).set(packet);
       return packetOf(this.#tactus.memory.withAnswer("tactus_packet_info", (info) => {
         this.#tactus.call("tactus_receiver_push", this.#handle, BigInt(number), at, packet.length, applied, info);
         return memory.struct("tactus_packet_info", info);
       }));
     });
+  }
+
+  skipNumber(number) {
+    checkNumber(number);
+    this.#tactus.call("tactus_receiver_push", this.#handle, BigInt(number), 0, 0, 0n, 0);
   }
 
   updates() {

@@ -9,6 +9,7 @@
 #include <tactus/base/shown.h>
 #include <tactus/file/stream_file.h>
 #include <tactus/player.h>
+#include <tactus/thesis/if_built.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
@@ -135,7 +136,7 @@ Outcome run(const DecodeOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   TACTUS_TRY(const auto bytes, read_file(options.input));
   const std::span file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-  auto player = Player::open(file, {.replica = options.replica, .limits = {}});
+  auto player = Player::open(file, {.replica = options.replica, .limits = {.thesis = thesis_if_built()}});
   if (!player && options.replica.interpolation != Interpolation::none && std::string_view(player.error().rule) == "R-API-4")
     return refuse(shown_path(options.input) + ": the stream signals how a client passes over to its updates",
                   "Leave out --interpolate, or encode with --profile thesis.");

@@ -11,6 +11,7 @@
 #include <tactus/base/shown.h>
 #include <tactus/file/stream_file.h>
 #include <tactus/receiver.h>
+#include <tactus/thesis/if_built.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
@@ -90,7 +91,7 @@ tl::expected<Session, Failure> start(const TraceInfo& info, const TraceFrame& fi
   auto builder = scene_builder(info, first, coding, wanted);
   if (!builder) return blame(builder.error());
   if (options.world_size > 0) builder->world_size(options.world_size);
-  const auto scene = builder->motion(options.motion.physics()).build();
+  const auto scene = builder->motion(options.motion.physics()).build({.thesis = thesis_if_built()});
   if (!scene) return refuse_scene(scene.error(), options);
   auto writer = StreamFileWriter::create(out, **scene);
   if (!writer) return blame(writer.error());

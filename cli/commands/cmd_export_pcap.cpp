@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <tactus/base/shown.h>
+#include <tactus/thesis/if_built.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/commands.h"
@@ -48,7 +49,8 @@ Result<std::unique_ptr<sim::SessionNetwork>> connect(const TraceInfo& info, cons
                                                      const ExportPcapOptions& options, SessionCapture& capture) {
   const SenderOptions sender = options.meshes.sender(options.triggers);
   TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding(options.triggers), sender));
-  TACTUS_TRY(SharedScene scene, builder.motion(options.motion.physics()).baselines(kBaselines).build());
+  TACTUS_TRY(SharedScene scene,
+             builder.motion(options.motion.physics()).baselines(kBaselines).build({.thesis = thesis_if_built()}));
   sim::NetworkOptions network;
   network.downlink = options.link;
   network.uplink = options.uplink.value_or(options.link);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <tactus/base/shown.h>
+#include <tactus/thesis/if_built.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/input.h"
 #include "cli/options/options_codec.h"
@@ -28,6 +29,8 @@
 
 namespace tactus::cli {
 namespace {
+
+const ReceiverOptions kOptions{.limits = {.thesis = thesis_if_built()}};
 
 struct InfoOptions {
   std::string input;
@@ -75,7 +78,7 @@ class PacketTable {
     columns_.look(heading, true);
     fmt::print("\n");
     print_heading(stdout, columns_.aligned(heading));
-    if (auto player = Player::open(bytes))
+    if (auto player = Player::open(bytes, kOptions))
       for_each_packet(*player, [&](const PlayedPacket& played) { print_row(packet_info_value(played, player->scene()).json); });
   }
 
@@ -106,7 +109,7 @@ void print_with_packets(Bytes bytes, const Json& info) {
     for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 5) text.insert(at + 1, "    ");
     return text;
   };
-  auto player = Player::open(bytes);
+  auto player = Player::open(bytes, kOptions);
   std::string head = text_of_json(info);
   head.erase(head.rfind("\n}"));
   fmt::print("{},\n  \"packet_list\": [", head);
@@ -122,7 +125,7 @@ void print_with_packets(Bytes bytes, const Json& info) {
 Outcome info_stream(const InfoOptions& options) {
   TACTUS_TRY(const auto file, read_file(options.readable));
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(file.data()), file.size());
-  auto player = Player::open(bytes);
+  auto player = Player::open(bytes, kOptions);
   if (!player) return refuse(options.input, player.error());
   StreamTotals totals(player->scene());
   PacketTable table;

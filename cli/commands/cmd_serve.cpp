@@ -14,6 +14,7 @@
 #include <tactus/net/udp.h>
 #include <tactus/session/session_server.h>
 #include <tactus/sim/server.h>
+#include <tactus/thesis/if_built.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/live/event_log.h"
 #include "cli/live/live_report.h"
@@ -48,7 +49,7 @@ struct ServeOptions {
   std::uint64_t seed = 1;
   std::string log = "text";
   bool check = false;
-  DecodeLimits limits;
+  DecodeLimits limits{.thesis = thesis_if_built()};
   TriggerArguments triggers;
   MeshArguments meshes;
   CommonOptions common;

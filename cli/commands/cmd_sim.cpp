@@ -9,6 +9,7 @@
 
 #include <tactus/sim/link/session_network.h>
 #include <tactus/sim/simulation.h>
+#include <tactus/thesis/if_built.h>
 #include <tactus/trace/trace_file.h>
 #ifdef TACTUS_HAS_NET
 #include "cli/commands/session_capture.h"
@@ -185,8 +186,11 @@ tl::expected<sim::SimulationOptions, Failure> settings_of(const SimOptions& opti
                              .mesh_noise = options.mesh_noise,
                              .estimate_every = kEstimateEvery};
   if (options.has_channel())
-    out.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica,
-                                      options.meshes.coding(options.triggers), options.client_model_scale};
+    out.channel = sim::ChannelOptions{options.meshes.sender(options.triggers),
+                                      options.replica,
+                                      options.meshes.coding(options.triggers),
+                                      {.thesis = thesis_if_built()},
+                                      options.client_model_scale};
   if (!options.has_network()) return out;
   out.channel->timed = true;
   TACTUS_CHECK(add_network(options, scene, networked, *out.channel));

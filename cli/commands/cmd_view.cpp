@@ -9,6 +9,7 @@
 
 #include <tactus/base/shown.h>
 #include <tactus/player.h>
+#include <tactus/thesis/if_built.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
 #include "cli/report/report.h"
@@ -117,7 +118,7 @@ std::string file_name(const std::string& path) {
 
 tl::expected<Json, Failure> page_data(const ViewOptions& options, const std::string& bytes, Report& report) {
   const std::span file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-  auto player = Player::open(file);
+  auto player = Player::open(file, {.limits = {.thesis = thesis_if_built()}});
   if (!player) return refuse(options.input, player.error());
   Json data{{"version", 1}, {"name", file_name(options.input)}};
   PacketTable packets;

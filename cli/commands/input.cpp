@@ -13,6 +13,7 @@
 
 #include <tactus/base/shown.h>
 #include <tactus/file/stream_file.h>
+#include <tactus/thesis/if_built.h>
 #include <tactus/trace/byte_source.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/output.h"
@@ -111,7 +112,7 @@ constexpr std::string_view kStreamMagic = "\x89TCT";
 
 Outcome check_plausible_length(const std::string& path, std::span<const std::uint8_t> file, const std::string& remedy) {
   constexpr std::uint64_t kFreeTicks = 600000, kTicksByByte = 512;
-  auto reader = StreamFileReader::open(file);
+  auto reader = StreamFileReader::open(file, {.thesis = thesis_if_built()});
   if (!reader) return refuse(path, reader.error());
   std::uint64_t last = 0, packets = 0, elements = reader->scene()->objects.size();
   while (const auto packet = reader->next().value_or(std::nullopt)) {
@@ -142,7 +143,7 @@ tl::expected<MotionSource, Failure> MotionSource::open(const std::string& path, 
   TACTUS_TRY(auto bytes, read_file(source.input_->path()));
   source.bytes_ = std::make_unique<std::string>(std::move(bytes));
   const std::span file(reinterpret_cast<const std::uint8_t*>(source.bytes_->data()), source.bytes_->size());
-  auto player = Player::open(file);
+  auto player = Player::open(file, {.limits = {.thesis = thesis_if_built()}});
   if (!player) return refuse(path, player.error());
   TACTUS_CHECK(check_plausible_length(path, file, "If that is right, decode it with `tactus decode --ticks N`."));
   source.info_ = replica_info(player->scene(), path);

@@ -7,6 +7,7 @@
 
 #include <tactus/session/session_server.h>
 #include <tactus/sim/server.h>
+#include <tactus/thesis/if_built.h>
 #include "cli/report/messages.h"
 
 namespace tactus::cli {
@@ -16,7 +17,7 @@ struct Value;
 struct ServePlan {
   std::string scene{}, listen{};  ///< as typed; an address
   SessionServerOptions settings{};
-  DecodeLimits limits{};  ///< of the client that tries
+  DecodeLimits limits{.thesis = thesis_if_built()};  ///< of the client that tries
   bool is_sealed = false;
   std::size_t room = 0, wanted_room = 0;  ///< [bytes] for datagrams that wait
 };

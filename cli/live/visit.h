@@ -10,6 +10,7 @@
 #include <tactus/net/udp.h>
 #include <tactus/session/session_client.h>
 #include <tactus/sim/client.h>
+#include <tactus/thesis/if_built.h>
 #include <tactus/trace/trace_recorder.h>
 #include "cli/live/device_choice.h"
 #include "cli/live/device_loop.h"
@@ -28,7 +29,7 @@ struct JoinOptions {
   double duration = 0;         // [s], 0: until interrupted or the end of the recording
   double device_error = 1e-4;  // [m]
   double weber_fraction = 0.04;
-  DecodeLimits limits;
+  DecodeLimits limits{.thesis = thesis_if_built()};
   CommonOptions common;
 
   bool participates() const { return !scene.empty(); }

@@ -9,6 +9,7 @@
 #include <tactus/deformable/displacement.h>
 #include <tactus/rigid/trigger.h>
 #include <tactus/scene/scene_syntax.h>
+#include <tactus/thesis/if_built.h>
 
 namespace tactus::cli {
 
@@ -145,7 +146,7 @@ Result<TruthData> TruthData::create(const TraceInfo& info, const TraceFrame& fir
   const GhostBounds bounds = ghost_bounds(scene);
   const SenderOptions options{.triggers = bounds.rigid, .deformable = {.thresholds = bounds.deformable}};
   TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, {}, options));
-  TACTUS_TRY(const SharedScene shared, builder.build());
+  TACTUS_TRY(const SharedScene shared, builder.build({.thesis = thesis_if_built()}));
   TACTUS_TRY(PacketLog ghost, PacketLog::create(shared, options));
   return TruthData(info, scene, bounds, std::move(ghost));
 }

@@ -2,15 +2,16 @@
 #include <tactus/client/replica.h>
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 #include <utility>
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/fixed.h>
 #include <tactus/base/rule.h>
+#include <tactus/client/update_interpolation.h>
 #include <tactus/deformable/deformable_decoder.h>
 #include <tactus/rigid/curve.h>
+#include <tactus/scene/thesis_component.h>
 
 namespace tactus {
 
@@ -118,25 +119,30 @@ RigidPose interpolate_gap(const Scene& scene, const RigidState& a, const RigidSt
 
 // ==== replica ====
 
-Result<void> Replica::check(const ReplicaOptions& options, const Scene& scene) noexcept {
+namespace {
+
+bool is_of_thesis(Interpolation mode) noexcept { return mode != Interpolation::none && mode != Interpolation::playout; }
+
+}  // namespace
+
+Result<void> Replica::check(const ReplicaOptions& options, const Scene& scene, const ThesisComponent* thesis) noexcept {
   const bool valid = options.fraction > 0 && options.fraction <= 1 && options.shortest >= 0 &&
                      options.shortest <= options.longest && options.longest <= 10;
-  const bool smooths = options.interpolation != Interpolation::none && options.interpolation != Interpolation::playout;
-  if (!valid || (smooths && scene.is_smoothed)) return fail(Errc::invalid_argument, "R-API-4");
+  const bool interpolates = is_of_thesis(options.interpolation);
+  if (interpolates && thesis == nullptr) return fail(Errc::unsupported, "R-API-16");
+  if (!valid || (interpolates && scene.is_smoothed)) return fail(Errc::invalid_argument, "R-API-4");
   return {};
 }
 
 Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes,
-                 const DevicePath* device)
+                 const DevicePath* device, const ThesisComponent* thesis)
     : scene_(scene),
       predictor_(scene, device),
-      interpolation_(options.interpolation),
-      fraction_(static_cast<std::uint32_t>(std::floor(options.fraction * 65536 + 0.5))),
-      shortest_(static_cast<std::int64_t>(std::floor(options.shortest * scene.tick_rate + 0.5))),
-      longest_(static_cast<std::int64_t>(std::floor(options.longest * scene.tick_rate + 0.5))),
+      is_late_(options.interpolation == Interpolation::playout),
       reach_(std::min<std::int64_t>(round_div(300 * std::int64_t{scene.tick_rate}, 1000), scene.max_extrapolation)),
-      tracks_(interpolation_ == Interpolation::playout ? 0 : scene.objects.size()),
-      timelines_(interpolation_ == Interpolation::playout ? scene.objects.size() : 0),
+      updates_(is_of_thesis(options.interpolation) ? thesis->interpolation(scene, options, device) : nullptr),
+      tracks_(is_late_ || updates_ ? 0 : scene.objects.size()),
+      timelines_(is_late_ ? scene.objects.size() : 0),
       shapes_(std::move(shapes)) {
   heard_.reset();
   timelines_.reset(scene_);
@@ -146,14 +152,8 @@ Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<
   }
 }
 
-/// t_N in ticks: a fraction of the mean gap, clipped; 0 while no gap is known. spec 60-client 3
-std::int64_t Replica::interval(const Track& track) const noexcept {
-  if (track.gap_count == 0) return 0;
-  std::int64_t sum = 0;
-  for (std::size_t i = 0; i < track.gap_count; ++i) sum += track.gaps[i];
-  const std::int64_t wanted = round_div(sum * fraction_, static_cast<std::int64_t>(track.gap_count) << 16);
-  return std::clamp(wanted, shortest_, longest_);
-}
+Replica::Replica(Replica&&) noexcept = default;
+Replica::~Replica() = default;
 
 void Replica::add_to_timelines(const DecodedPacket& packet, const RigidStates& states) noexcept {
   heard_.add(packet.number);
@@ -161,35 +161,15 @@ void Replica::add_to_timelines(const DecodedPacket& packet, const RigidStates& s
 }
 
 void Replica::apply(const DecodedPacket& packet, const RigidStates& states, std::int64_t arrival) noexcept {
-  if (interpolation_ == Interpolation::playout) return add_to_timelines(packet, states);
+  if (is_late_) return add_to_timelines(packet, states);
+  if (updates_) return updates_->apply(packet, states, arrival);
   for (const RigidUpdate& update : packet.updates) {
     Track& track = tracks_[update.object];
     if (packet.number < track.number) continue;  // reordered: there is a newer update of this object
     track.number = packet.number;
-    const std::int64_t now = std::max({arrival, packet.tick, track.last_arrival});
-    const RigidPose shown = pose(update.object, now);
-    const RigidMotion before = motion(track, now);
-    const bool running = now < track.end;
-    if (track.last_arrival >= 0) {
-      track.gaps[track.gap_next] = saturate32(now - track.last_arrival);
-      track.gap_next = static_cast<std::uint8_t>((track.gap_next + 1) % kArrivals);
-      track.gap_count = std::min<std::uint8_t>(static_cast<std::uint8_t>(track.gap_count + 1), kArrivals);
-    }
-    track.last_arrival = now;
+    track.begin = std::max({arrival, packet.tick, track.begin});
     track.path.follow(predictor_, states.objects[update.object]);
-    track.begin = track.end = now;
-    if (interpolation_ == Interpolation::none || running) continue;
-    track.end = now + interval(track);
-    track.error = offset_between(predictor_.shown(update.object, track.path.state, now), shown);
-    if (interpolation_ != Interpolation::linear)
-      track.change = change_between(scene_, before, motion(track, now), track.end - now);
   }
-}
-
-/// Velocities of dead reckoning at `now`: none once it has come to rest.
-RigidMotion Replica::motion(const Track& track, std::int64_t now) const noexcept {
-  if (now - track.path.state.tick >= scene_.max_extrapolation) return {};
-  return predictor_.motion(track.path.state, now, {});
 }
 
 /// From an update to the next. spec 60-client 7.   pre  a.state.tick <= tick, and tick is not after the next
@@ -231,24 +211,19 @@ RigidPose Replica::past_pose(std::uint32_t object, std::int64_t tick) const noex
 }
 
 RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
-  if (interpolation_ == Interpolation::playout) return past_pose(object, now);
+  if (is_late_) return past_pose(object, now);
+  if (updates_) return updates_->pose(object, now);
   const Track& track = tracks_[object];
-  now = std::max(now, track.begin);
-  if (now >= track.end) return track.path.pose(predictor_, now);
-  const std::int64_t left = round_div((track.end - now) << 30, track.end - track.begin);
-  const Cubic curve = cubic(left);
-  const std::int64_t faded = interpolation_ == Interpolation::hermite ? curve.error : left;
-  return displaced(predictor_.shown(object, track.path.state, now), track.error, track.change, {faded, faded, curve.change});
+  return track.path.pose(predictor_, std::max(now, track.begin));
 }
 
 std::uint8_t Replica::lod(std::uint32_t object, std::int64_t now) const noexcept {
-  if (interpolation_ != Interpolation::playout) return tracks_[object].path.state.lod;
-  return timelines_[timelines_.around(object, now).before].state.lod;
+  if (is_late_) return timelines_[timelines_.around(object, now).before].state.lod;
+  return updates_ ? updates_->lod(object) : tracks_[object].path.state.lod;
 }
 
 std::span<const Vec3i> Replica::displacements(std::size_t object, std::int64_t now) noexcept {
-  return interpolation_ == Interpolation::playout ? shapes_[object]->displacements_of(now)
-                                                  : shapes_[object]->displacements_at(now);
+  return is_late_ ? shapes_[object]->displacements_of(now) : shapes_[object]->displacements_at(now);
 }
 
 std::uint64_t Replica::pose_hash(std::int64_t now) const noexcept {

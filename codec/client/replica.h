@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -92,6 +93,7 @@ RigidPose interpolate_gap(const Scene& scene, const RigidState& a, const RigidSt
 
 // ==== replica ====
 
+/// linear, hermite and blending are of component thesis (thesis/thesis.h).
 enum class Interpolation : std::uint8_t {
   none,      ///< a new state is applied at once (NI)
   linear,    ///< over t_N, the difference to the new state fades at constant rate (WI): a straight line; thesis eqs. 3.4-3.6
@@ -100,7 +102,7 @@ enum class Interpolation : std::uint8_t {
   playout,  ///< the client shows ticks in the past, by a playout delay of its choice, and interpolates over gaps that losses leave
 };
 
-/// The heuristic for t_N: `fraction` of the mean of the last 5 inter-arrival times, clipped. An update during a running interpolation
+/// The heuristic for t_N of component thesis: `fraction` of the mean of the last 5 inter-arrival times, clipped. An update during a running interpolation
 /// ends it: the new state is applied at once.
 struct ReplicaOptions {
   Interpolation interpolation = Interpolation::none;
@@ -110,15 +112,19 @@ struct ReplicaOptions {
 };
 
 class DeformableDecoder;
+class UpdateInterpolation;
 
 class Replica {
  public:
-  /// R-API-4: not 0 < fraction <= 1, not 0 <= shortest <= longest <= 10 s, or smoothing of the client's own in a smoothed scene.
-  static Result<void> check(const ReplicaOptions& options, const Scene& scene) noexcept;
+  /// R-API-4: not 0 < fraction <= 1, not 0 <= shortest <= longest <= 10 s, or interpolation of component thesis in a smoothed
+  /// scene.   unsupported R-API-16: such an interpolation without the component
+  static Result<void> check(const ReplicaOptions& options, const Scene& scene, const ThesisComponent* thesis = nullptr) noexcept;
   /// pre  check(); scene, decoders and path outlive the replica
   /// in   shapes  one per deformable object;  device  path of this client's device, which may drive objects; null: it is not known
   Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes,
-          const DevicePath* device = nullptr);
+          const DevicePath* device = nullptr, const ThesisComponent* thesis = nullptr);
+  Replica(Replica&&) noexcept;
+  ~Replica();
 
   /// Apply a decoded packet of the rigid objects at tick `arrival`: its own, or later when the network delayed it. An earlier
   /// arrival counts as the packet's tick, or as that of the object's last update, if that is later. With Interpolation::playout the
@@ -150,33 +156,24 @@ class Replica {
   std::uint64_t pose_hash(std::int64_t now) const noexcept;  ///< FNV-1a over every shown pose (conformance)
 
  private:
-  static constexpr std::size_t kArrivals = 5;  // M
   struct Track {
-    SmoothedPath path;                // target: the newest state
-    std::uint64_t number = 0;         // of its packet
-    std::int64_t begin = 0, end = 0;  // [begin, end); empty: no interpolation is running
-    PoseOffset error;                 // from where the newest state is at `begin` to what was shown there
-    PoseOffset change;                // what the velocities of both states differ by until `end`; none with linear
-    std::int64_t last_arrival = -1;
-    std::array<std::int32_t, kArrivals> gaps{};
-    std::uint8_t gap_count = 0, gap_next = 0;
+    SmoothedPath path;         // from the newest state
+    std::uint64_t number = 0;  // of its packet
+    std::int64_t begin = 0;    // tick from which it is shown
   };
   static constexpr unsigned kMostSmoothed = 64;  // updates back
   void add_to_timelines(const DecodedPacket& packet, const RigidStates& states) noexcept;
   RigidPose path_from(std::uint32_t object, const Timelines::Update& a, std::int64_t tick) const noexcept;
   PoseOffset past_offset(std::uint32_t object, Timelines::Index update) const noexcept;
   RigidPose past_pose(std::uint32_t object, std::int64_t tick) const noexcept;
-  std::int64_t interval(const Track& track) const noexcept;
-  RigidMotion motion(const Track& track, std::int64_t now) const noexcept;
 
   const Scene& scene_;
   RigidPredictor predictor_;
-  Interpolation interpolation_ = Interpolation::none;
-  std::uint32_t fraction_ = 0;  // x 2^-16
-  std::int64_t shortest_ = 0, longest_ = 0;
-  std::int64_t reach_ = 0;     // [ticks] longest gap to interpolate over
-  std::vector<Track> tracks_;  // empty with playout
-  Timelines timelines_;        // of no object without
+  bool is_late_;                                  // playout
+  std::int64_t reach_;                            // [ticks] longest gap to interpolate over
+  std::unique_ptr<UpdateInterpolation> updates_;  // of component thesis, if asked for
+  std::vector<Track> tracks_;                     // in mode none alone
+  Timelines timelines_;                           // of no object without playout
   HeardPackets heard_;
   std::vector<DeformableDecoder*> shapes_;
 };

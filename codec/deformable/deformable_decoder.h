@@ -19,6 +19,7 @@
 #include <tactus/deformable/main_syntax.h>
 #include <tactus/deformable/vertex_coder.h>
 #include <tactus/packet/packet.h>
+#include <tactus/packet/substream_decoder.h>
 #include <tactus/scene/scene.h>
 
 namespace tactus {
@@ -167,6 +168,39 @@ class DeformableDecoder {
   virtual bool holds(std::uint64_t number) const noexcept = 0;  ///< the state after the packet of this number
   virtual std::int64_t tick() const noexcept = 0;               ///< of the newest packet, 0 before the first
   virtual std::uint64_t state_hash() const noexcept = 0;
+};
+
+/// The same with the codec of a profile.
+template <class Codec>
+class DeformableDecoderOf final : public DeformableDecoder {
+ public:
+  template <class... More>
+  DeformableDecoderOf(const Scene& scene, std::size_t index, const DecodeLimits& limits, typename Codec::State initial,
+                      More&&... more)
+      : object_(scene.deformables[index]),
+        stream_(scene, limits, std::move(initial), scene, object_, std::forward<More>(more)...),
+        number_(index + 1) {}
+
+  Result<DecodedPacket> decode(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept override {
+    TACTUS_TRY(DecodedPacket decoded, stream_.decode(number, packet));
+    decoded.substream = number_;
+    return decoded;
+  }
+  std::span<const Vec3i> displacements() const noexcept override { return stream_.newest().displacement; }
+  std::span<const Vec3i> displacements_at(std::int64_t tick) noexcept override { return predict(stream_.newest(), tick); }
+  std::span<const Vec3i> displacements_of(std::int64_t tick) noexcept override { return predict(stream_.at(tick), tick); }
+  bool holds(std::uint64_t number) const noexcept override { return stream_.holds(number); }
+  std::int64_t tick() const noexcept override { return stream_.newest().tick; }
+  std::uint64_t state_hash() const noexcept override { return hash_of_state(object_, stream_.newest()); }
+
+ private:
+  std::span<const Vec3i> predict(const typename Codec::State& state, std::int64_t tick) noexcept {
+    return stream_.codec().predict(state, std::clamp(tick, state.tick, kTickLimit));
+  }
+
+  const DeformableObject& object_;
+  SubstreamDecoder<Codec> stream_;
+  std::size_t number_;
 };
 
 }  // namespace tactus

@@ -10,7 +10,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/deformable/displacement.h>
-#include <tactus/deformable/thesis_encoder.h>
+#include <tactus/scene/thesis_component.h>
 
 namespace tactus {
 
@@ -259,46 +259,6 @@ Result<Payload> MainEncoder::encode(const EncodeRequest<MainState>& request, std
 
 namespace {
 
-constexpr double kSomeLoss = 0.003;  // fraction of packets
-
-template <class Codec>
-class Of final : public DeformableEncoder {
- public:
-  template <class... More>
-  Of(const Scene& scene, std::size_t index, const DeformableOptions& options, const SenderPolicy& policy, std::size_t largest,
-     bool layered, typename Codec::State initial, More&&... more)
-      : object_(scene.deformables[index]),
-        layered_(layered),
-        stream_(scene, layered ? chained(policy) : policy, index + 1, largest, layered ? 2 : 1, initial, scene, object_, options,
-                std::forward<More>(more)...) {}
-
-  void read(const ShapeTruth& truth) noexcept override { stream_.codec().read(truth.shape(), truth.touch()); }
-  Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept override {
-    return stream_.encode(tick, layer, number).value_or(Packet{});
-  }
-  bool is_layered() const noexcept override { return layered_; }
-  /// Where nothing is lost an acknowledgement is late at most.
-  void set_link(const LinkState& link) noexcept override {
-    stream_.set_ack_timeout(link.loss >= kSomeLoss ? link.ack_timeout : 0);
-  }
-  void set_bound_scale(double factor) noexcept override { stream_.codec().set_bound_scale(factor); }
-  void request_key() noexcept override { stream_.request_key(); }
-  void forget_last() noexcept override { stream_.forget_last(); }
-  void acknowledge(std::uint64_t number) noexcept override { stream_.acknowledge(number); }
-  std::uint64_t state_hash() const noexcept override { return tactus::state_hash(object_, stream_.newest()); }
-
- private:
-  /// A packet of one layer takes the vertices of the other from its baseline, so it must build on the newest packet.
-  static SenderPolicy chained(SenderPolicy policy) noexcept {
-    policy.baseline = Baseline::previous;
-    return policy;
-  }
-
-  const DeformableObject& object_;
-  bool layered_;
-  SubstreamEncoder<Codec> stream_;
-};
-
 /// The rule that a touch breaks, or none.
 RuleName broken_rule(const SurfaceTouch& touch, std::size_t triangles) noexcept {
   if (!std::isfinite(touch.force) || !std::isfinite(touch.stiffness)) return "R-API-1";
@@ -334,8 +294,8 @@ void ShapeTruth::read(std::int64_t tick, const DeformableTruth* truth) noexcept 
   }
 }
 
-std::size_t max_packet(const DeformableObject& object) noexcept {
-  if (object.profile == DeformableProfile::thesis) return max_thesis_packet(object.rest.size(), object.quant_bits);
+std::size_t max_packet(const Scene& scene, const DeformableObject& object) noexcept {
+  if (object.profile == DeformableProfile::thesis) return scene.thesis()->largest_packet(object);
   return max_main_packet(object.rest.size(), object.basis.steps.size());
 }
 
@@ -352,10 +312,9 @@ std::unique_ptr<DeformableEncoder> DeformableEncoder::create(const Scene& scene,
                                                              const DeformableOptions& options, const SenderPolicy& policy,
                                                              std::unique_ptr<FollowedShape> driven) {
   const DeformableObject& o = scene.deformables[object];
-  if (o.profile == DeformableProfile::thesis)
-    return std::make_unique<Of<ThesisEncoder>>(scene, object, options, policy, max_packet(o), o.layered, initial_thesis_state(o));
-  return std::make_unique<Of<MainEncoder>>(scene, object, options, policy, max_packet(o), o.layered, initial_main_state(o),
-                                           std::move(driven));
+  if (o.profile == DeformableProfile::thesis) return scene.thesis()->encoder(scene, object, options, policy);
+  return std::make_unique<DeformableEncoderOf<MainEncoder>>(scene, object, options, policy, max_packet(scene, o), o.layered,
+                                                            initial_main_state(o), std::move(driven));
 }
 
 }  // namespace tactus

@@ -128,8 +128,8 @@ class ShapeTruth {
   std::optional<SurfaceTouch> touch_;
 };
 
-/// Largest packet of an object, without the number of its substream [bytes].
-std::size_t max_packet(const DeformableObject& object) noexcept;
+/// Largest packet of an object of the scene, without the number of its substream [bytes].
+std::size_t max_packet(const Scene& scene, const DeformableObject& object) noexcept;
 
 class DeformableEncoder {
  public:
@@ -153,6 +153,47 @@ class DeformableEncoder {
   virtual void forget_last() noexcept = 0;
   virtual void acknowledge(std::uint64_t number) noexcept = 0;
   virtual std::uint64_t state_hash() const noexcept = 0;
+};
+
+/// The same with the codec of a profile.
+template <class Codec>
+class DeformableEncoderOf final : public DeformableEncoder {
+ public:
+  template <class... More>
+  DeformableEncoderOf(const Scene& scene, std::size_t index, const DeformableOptions& options, const SenderPolicy& policy,
+                      std::size_t largest, bool layered, typename Codec::State initial, More&&... more)
+      : object_(scene.deformables[index]),
+        layered_(layered),
+        stream_(scene, layered ? chained(policy) : policy, index + 1, largest, layered ? 2 : 1, initial, scene, object_, options,
+                std::forward<More>(more)...) {}
+
+  void read(const ShapeTruth& truth) noexcept override { stream_.codec().read(truth.shape(), truth.touch()); }
+  Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept override {
+    return stream_.encode(tick, layer, number).value_or(Packet{});
+  }
+  bool is_layered() const noexcept override { return layered_; }
+  /// Where nothing is lost an acknowledgement is late at most.
+  void set_link(const LinkState& link) noexcept override {
+    stream_.set_ack_timeout(link.loss >= kSomeLoss ? link.ack_timeout : 0);
+  }
+  void set_bound_scale(double factor) noexcept override { stream_.codec().set_bound_scale(factor); }
+  void request_key() noexcept override { stream_.request_key(); }
+  void forget_last() noexcept override { stream_.forget_last(); }
+  void acknowledge(std::uint64_t number) noexcept override { stream_.acknowledge(number); }
+  std::uint64_t state_hash() const noexcept override { return hash_of_state(object_, stream_.newest()); }
+
+ private:
+  static constexpr double kSomeLoss = 0.003;  // fraction of packets
+
+  /// A packet of one layer takes the vertices of the other from its baseline, so it must build on the newest packet.
+  static SenderPolicy chained(SenderPolicy policy) noexcept {
+    policy.baseline = Baseline::previous;
+    return policy;
+  }
+
+  const DeformableObject& object_;
+  bool layered_;
+  SubstreamEncoder<Codec> stream_;
 };
 
 }  // namespace tactus

@@ -133,4 +133,10 @@ class BaselineRing {
   std::size_t newest_;  // slots_.size(): none yet
 };
 
+/// state_hash() that is declared where a codec's state is.
+template <class Object, class State>
+std::uint64_t hash_of_state(const Object& object, const State& state) noexcept {
+  return state_hash(object, state);
+}
+
 }  // namespace tactus

@@ -12,7 +12,7 @@
 namespace tactus {
 
 // ==== curve ====
-// Curves that begin at one moving pose and end at another: an offset is added to dead reckoning and fades. spec/60-client.md section 3.
+// Curves that begin at one moving pose and end at another: an offset is added to dead reckoning and fades. spec/60-client.md section 2.
 // Integers only.
 
 /// Difference of two poses, or what a difference of velocities makes of it in a while.

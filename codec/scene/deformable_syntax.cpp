@@ -54,10 +54,11 @@ bool is_basis(const DeformableObject& m) noexcept {
                      [](std::int16_t e) { return e >= -ModeBasis::kMaxEntry && e <= ModeBasis::kMaxEntry; });
 }
 
-Result<void> parse_parameters(ByteReader& in, DeformableObject& object) {
+Result<void> parse_parameters(ByteReader& in, bool has_thesis, DeformableObject& object) {
   const std::uint8_t profile = in.u8();
-  if (in.ok() && profile > static_cast<std::uint8_t>(DeformableProfile::main))
-    return fail(Errc::unsupported, "R-DEF-2", in.bit_offset());
+  const bool is_main = profile == static_cast<std::uint8_t>(DeformableProfile::main);
+  const bool is_thesis = profile == static_cast<std::uint8_t>(DeformableProfile::thesis);
+  if (in.ok() && !is_main && !(is_thesis && has_thesis)) return fail(Errc::unsupported, "R-DEF-2", in.bit_offset());
   object.profile = static_cast<DeformableProfile>(profile);
   const auto name = in.bytes(in.u8());
   object.name.assign(name.begin(), name.end());
@@ -276,7 +277,7 @@ void write_deformable(ByteWriter& out, const DeformableObject& object) {
 
 Result<DeformableObject> parse_deformable(ByteReader& in, const DeformableRoom& room) {
   DeformableObject object;
-  TACTUS_CHECK(parse_parameters(in, object));
+  TACTUS_CHECK(parse_parameters(in, room.has_thesis, object));
   const std::uint64_t vertices = in.varint(), triangles = in.varint();
   if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
   if (!are_parameters(object)) return fail(Errc::invalid, "R-DEF-3", in.bit_offset());

@@ -14,9 +14,10 @@ namespace tactus {
 /// pre  the object breaks no rule.
 void write_deformable(ByteWriter& out, const DeformableObject& object);
 
-/// What the preceding objects have left of the limits.
+/// What the preceding objects have left of the limits, and which profiles there are.
 struct DeformableRoom {
   std::uint64_t vertices = 0, triangles = 0;
+  bool has_thesis = false;
 };
 
 /// Allocates in proportion to the bytes received.

@@ -125,6 +125,7 @@ Result<void> find_broken_rule(const SceneSpec& spec, const MeshSupport* meshes, 
   std::uint64_t vertices = 0, triangles = 0;
   for (const DeformableObject& object : spec.deformables) {
     if (!is_name(object.name) || !names.insert(object.name).second) return fail(Errc::invalid, "R-STR-11");
+    if (object.profile == DeformableProfile::thesis && limits.thesis == nullptr) return fail(Errc::unsupported, "R-DEF-2");
     if (const RuleName rule = meshes->broken_rule(object)) return fail(Errc::invalid, rule);
     if (object.body && !meshes->is_solid(object, spec.grid.position)) return fail(Errc::invalid, "R-ELA-4");
     vertices += object.rest.size();
@@ -153,13 +154,15 @@ Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits) try 
 }
 
 Result<void> check_scene(const Scene& scene, const DecodeLimits& limits) try {
-  return find_broken_rule(scene, scene.mesh_support(), limits);
+  DecodeLimits own = limits;
+  if (scene.thesis()) own.thesis = scene.thesis();
+  return find_broken_rule(scene, scene.mesh_support(), own);
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
 
-Scene::Scene(SceneSpec&& spec, const MeshSupport* meshes)
-    : SceneSpec(std::move(spec)), mesh_support_(meshes), has_paths_(driven || has_elastic_body(deformables)) {
+Scene::Scene(SceneSpec&& spec, const MeshSupport* meshes, const ThesisComponent* thesis)
+    : SceneSpec(std::move(spec)), mesh_support_(meshes), thesis_(thesis), has_paths_(driven || has_elastic_body(deformables)) {
   for (std::uint32_t i = 0; i < objects.size(); ++i)
     if (objects[i].dof != Dof::none) moving_.push_back(i);
   for (DeformableObject& object : deformables) {
@@ -175,7 +178,7 @@ Result<SharedScene> Scene::create(SceneSpec spec, const DecodeLimits& limits) {
 
 Result<SharedScene> Scene::create(SceneSpec&& spec, const MeshSupport* meshes, const DecodeLimits& limits) try {
   TACTUS_CHECK(find_broken_rule(spec, meshes, limits));
-  return SharedScene(new Scene(std::move(spec), meshes));
+  return SharedScene(new Scene(std::move(spec), meshes, limits.thesis));
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }

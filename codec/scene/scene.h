@@ -89,7 +89,9 @@ struct SceneSpec {
   std::optional<StreamBounds> bounds;         ///< error bounds that the sender guarantees; none: not declared
 };
 
-/// Limits checked by a decoder before it allocates. Memory grows with the bytes received of the declaration and with
+struct ThesisComponent;
+
+/// Limits checked by a decoder before it allocates, and the optional part that it has. Memory grows with the bytes received of the declaration and with
 /// state_bytes(), never with announced counts. A mesh of 2^20 vertices without a basis fits with a baseline_span of up to 19.
 struct DecodeLimits {
   std::uint32_t objects = 4096;
@@ -100,6 +102,7 @@ struct DecodeLimits {
   std::uint64_t state_bytes = 1ull << 28;   ///< of all states that the stream's decoders keep
   std::uint64_t basis_work = 1ull << 22;    ///< of all bases to compute: 57 000 vertices with 48 modes, or 5 of 700
   std::uint64_t elastic_work = 1ull << 30;  ///< of all elastic bodies: thin ones of 10 000 vertices, or a cube of 1300
+  const ThesisComponent* thesis = nullptr;  ///< thesis/thesis.h; without it what belongs to component thesis is unsupported
 };
 
 struct MeshSupport;
@@ -109,7 +112,7 @@ struct VertexHierarchy;
 class Scene : public SceneSpec {
  public:
   /// time 1 us per vertex; 80 ms more for a basis of 48 modes of 700 vertices, 160 ms of 50 000
-  /// err  invalid, limit_exceeded, with the R-STR or R-DEF rule that the declaration breaks
+  /// err  invalid, limit_exceeded, with the R-STR or R-DEF rule that the declaration breaks; unsupported R-DEF-2
   static Result<std::shared_ptr<const Scene>> create(SceneSpec spec, const DecodeLimits& limits = {});
 
   /// Whether both ends of a session know the path of a device: it drives objects or deforms elastic bodies.
@@ -128,6 +131,8 @@ class Scene : public SceneSpec {
 
   /// What its deformable objects need; null: it has none. Internal to the library.
   const MeshSupport* mesh_support() const noexcept { return mesh_support_; }
+  /// DecodeLimits::thesis that it was made with. Internal to the library.
+  const ThesisComponent* thesis() const noexcept { return thesis_; }
 
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
@@ -135,9 +140,10 @@ class Scene : public SceneSpec {
  private:
   friend class SceneBuilder;
   static Result<std::shared_ptr<const Scene>> create(SceneSpec&& spec, const MeshSupport* meshes, const DecodeLimits& limits);
-  Scene(SceneSpec&& spec, const MeshSupport* meshes);
+  Scene(SceneSpec&& spec, const MeshSupport* meshes, const ThesisComponent* thesis);
 
   const MeshSupport* mesh_support_;
+  const ThesisComponent* thesis_;
   std::vector<std::uint32_t> moving_;
   std::vector<std::shared_ptr<const VertexHierarchy>> hierarchies_;  // by deformable object; null: profile thesis
   bool has_paths_ = false;

@@ -348,6 +348,8 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build(const DecodeLimits& 
   for (Deformable& of : taken.deformables_) {
     auto object = taken.meshes_->make(of, spec, is_nearly_exact);
     if (!object) return refuse(object.error(), of.name);
+    if (object->profile == DeformableProfile::thesis && limits.thesis == nullptr)
+      return refuse({Errc::unsupported, RuleName("R-DEF-2"), 0}, of.name);
     if (!is_name(of.name) || !names.insert(of.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, of.name);
     if (const RuleName rule = taken.meshes_->support->broken_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
     spec.deformables.push_back(std::move(*object));

@@ -57,7 +57,7 @@ Result<void> parse_deformables(ByteReader& body, const DecodeLimits& limits, Sce
   if (count < 1) return fail(Errc::malformed, "R-DEF-1", body.bit_offset());
   if (count > kMaxDeformables) return fail(Errc::invalid, "R-DEF-1", body.bit_offset());
   if (count > limits.objects - spec.objects.size()) return fail(Errc::limit_exceeded, "R-STR-14", body.bit_offset());
-  DeformableRoom room{limits.vertices, limits.triangles};
+  DeformableRoom room{limits.vertices, limits.triangles, limits.thesis != nullptr};
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint64_t start = body.bit_offset();
     TACTUS_TRY(auto object, parse_deformable(body, room));

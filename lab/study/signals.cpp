@@ -9,7 +9,7 @@
 #include <optional>
 
 #include <tactus/session/device_signal.h>
-#include <tactus/signal/force_signal.h>
+#include <tactus/thesis/force_signal.h>
 
 namespace tactus::sim::study {
 namespace {

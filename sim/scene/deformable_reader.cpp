@@ -6,7 +6,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr double kFarthest = 100;  // [m] as for other objects
+constexpr double kFarthest = 500, kLargest = 100;  // [m] as for other objects
 constexpr Range kPosition{-kFarthest, kFarthest};
 constexpr double kTetBytes = 3000;            // as measured, without a factorised matrix
 constexpr std::uint64_t kMostTets = 170'000;  // of a scene
@@ -45,7 +45,7 @@ std::string in_megabytes(double bytes) { return std::to_string(std::llround(byte
 
 TetMesh read_slab(TomlReader& in, const toml::table& table, const std::string& path) {
   const toml::node& node = *table.get("cells");
-  const double cell = in.number(table, path, "cell", {1e-5, kFarthest});
+  const double cell = in.number(table, path, "cell", {1e-5, kLargest});
   const toml::array* cells = node.as_array();
   if (!cells || cells->size() != 3) {
     in.fail_at(node.source(), Errc::invalid, "R-SCN-5", path + ".cells", "write an array of 3 whole numbers");

@@ -18,7 +18,8 @@ namespace tactus::sim {
 namespace {
 
 constexpr std::size_t kMostSceneBytes = std::size_t{4} << 20;
-constexpr double kFarthest = 100;                                   // [m] well inside the codec's default grid
+constexpr double kFarthest = 500;                                   // [m] inside the codec's default grid, with 12 m to move
+constexpr double kLargest = 100;                                    // [m] of an object
 constexpr std::size_t kMostObjects = 4096, kMostDeformables = 255;  // limits of a stream
 constexpr std::size_t kMostUsers = 64;
 constexpr double kLongest = 24 * 3600.0;                                           // [s]
@@ -82,7 +83,7 @@ void read_surface(TomlReader& in, const toml::table& table, const std::filesyste
     high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
   }
   object.size = high - low;
-  if (!(norm(object.size) <= kFarthest))
+  if (!(norm(object.size) <= kLargest))
     in.fail_at(node.source(), Errc::invalid, "R-SCN-6", "object.surface",
                "scale it: coordinates are metres, it is over 100 m long");
 }
@@ -105,7 +106,7 @@ SceneObject read_object(TomlReader& in, const toml::table& table, const std::fil
       {"name", "size", "surface", "mass", "friction", "damping", "dof", "position", "rotation", "velocity", "angular_velocity"});
   SceneObject object;
   object.name = in.name(table, path);
-  if (!table.contains("surface")) object.size = in.vector(table, path, "size", {1e-4, kFarthest});
+  if (!table.contains("surface")) object.size = in.vector(table, path, "size", {1e-4, kLargest});
   object.dof = read_axes(in, table, path, "dof", Dof::all);
   object.mass = in.number(table, path, "mass", {1e-6, 1e6});
   object.friction = in.number(table, path, "friction", {0, 100});
@@ -158,8 +159,8 @@ SceneInterest read_interest(TomlReader& in, const toml::table& table) {
   const std::string path = "interest";
   in.allow(table, path, {"full", "reach"});
   SceneInterest out;
-  out.full = in.number(table, path, "full", {1e-3, kFarthest});
-  out.reach = in.number(table, path, "reach", {std::max(1e-3, out.full), 4 * kFarthest});
+  out.full = in.number(table, path, "full", {1e-3, kLargest});
+  out.reach = in.number(table, path, "reach", {std::max(1e-3, out.full), 4 * kLargest});
   return out;
 }
 

@@ -26,7 +26,8 @@ Recording record(std::uint32_t squares, Kind kind) {
   Recording out;
   out.scene =
       testing::shared(testing::sheet_spec(mesh, kind == Kind::thesis ? DeformableProfile::thesis : DeformableProfile::main,
-                                          kind == Kind::basis ? testing::wave_basis(mesh, squares, 48) : ModeBasis{}));
+                                          kind == Kind::basis ? testing::wave_basis(mesh, squares, 48) : ModeBasis{}),
+                      testing::kWithThesis);
   testing::DentedSheet sheet(mesh, squares);
   const std::size_t frames = squares > 300 ? 8 : kFrames;
   for (std::size_t k = 0; k < frames; ++k) out.frames.push_back(sheet.frame(static_cast<std::int64_t>(k)));

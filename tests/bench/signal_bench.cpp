@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Cost of the signals of a session: forces under the deadband, and the samples of a device.
+/// Cost of the samples of a device, per tick.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <span>
 
 #include <tactus/session/device_signal.h>
-#include <tactus/signal/force_signal.h>
 #include <tactus/tactus.h>
 
 namespace tactus {
@@ -15,24 +14,11 @@ namespace {
 
 constexpr std::uint32_t kRate = 1000;
 
-/// A hand at 1 kHz that strokes a surface: 0.4 Hz, a tremor of 9 Hz, up to 4 N.
+/// A hand at 1 kHz that strokes a surface: 0.4 Hz, with a tremor of 9 Hz.
 double at(std::int64_t tick, double slow, double fast) {
   const double t = static_cast<double>(tick) / kRate;
   return slow * std::sin(2.5 * t) + fast * std::sin(56.5 * t);
 }
-
-void force_ticks(benchmark::State& state) {
-  auto sender = ForceSender::create({.predictor = static_cast<ForcePredictor>(state.range(0))}, kRate).value();
-  ForceReceiver receiver(kRate);
-  std::int64_t tick = 0, samples = 0;
-  for (auto _ : state) {
-    const auto sample = sender.encode(tick, {at(tick, 2, 0.05), at(tick, 0.5, 0.02), 2 + at(tick, 2, 0.1)});
-    if (!sample->empty() && receiver.push(*sample)) ++samples;
-    benchmark::DoNotOptimize(receiver.force(tick++));
-  }
-  state.counters["samples/s"] = static_cast<double>(samples) * kRate / static_cast<double>(tick);
-}
-BENCHMARK(force_ticks)->ArgName("linear")->Arg(0)->Arg(1);
 
 /// in   range  1: in contact with a surface of 500 N/m
 void device_ticks(benchmark::State& state) {

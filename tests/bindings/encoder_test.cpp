@@ -203,6 +203,35 @@ TEST(CEncoder, AClusterBeyondTheirCountIsRefused) {
   EXPECT_STREQ(error.object, "hinge");
 }
 
+/// Users of the C interface need not ask for it.
+TEST(CEncoder, TheLibraryHasComponentThesis) {
+  auto options = filled<tactus_scene_options>();
+  options.rigid_profile = TACTUS_PROFILE_THESIS;
+  tactus_scene_builder* raw = nullptr;
+  ASSERT_EQ(tactus_scene_builder_create(&options, &raw, nullptr), TACTUS_OK);
+  const Builder builder(raw);
+  ASSERT_EQ(tactus_scene_builder_rigid(raw, "cube", nullptr, nullptr), TACTUS_OK);
+  auto coding = filled<tactus_deformable_options>();
+  coding.profile = TACTUS_PROFILE_THESIS;
+  const double corners[] = {0, 0, 0, 0.1, 0, 0, 0, 0.1, 0};
+  const std::uint32_t triangles[] = {0, 1, 2};
+  ASSERT_EQ(tactus_scene_builder_deformable(raw, "sheet", corners, 3, triangles, 1, &coding, nullptr), TACTUS_OK);
+  tactus_scene* made = nullptr;
+  ASSERT_EQ(tactus_scene_builder_build(raw, &made, nullptr), TACTUS_OK);
+  const std::vector<std::uint8_t> bytes = written(Scene(made));
+  EXPECT_STREQ(parse_scene(bytes).error().rule, "R-DEF-2");
+  tactus_scene* parsed = nullptr;
+  ASSERT_EQ(tactus_scene_parse(bytes.data(), bytes.size(), nullptr, &parsed, nullptr, nullptr), TACTUS_OK);
+  const Scene scene(parsed);
+  for (const std::int32_t mode : {TACTUS_INTERPOLATION_LINEAR, TACTUS_INTERPOLATION_HERMITE, TACTUS_INTERPOLATION_BLENDING}) {
+    auto receiving = filled<tactus_receiver_options>();
+    receiving.interpolation = mode;
+    tactus_receiver* receiver = nullptr;
+    EXPECT_EQ(tactus_receiver_create(scene.get(), &receiving, &receiver, nullptr), TACTUS_OK) << mode;
+    tactus_receiver_destroy(receiver);
+  }
+}
+
 /// The defaults of both are those of the library, for scenes of all kinds of objects.
 TEST(CEncoder, WhatIsNotAskedForIsCodedAsByTheLibrary) {
   const std::vector<std::uint8_t> bytes = written(make_scene(true));
@@ -264,6 +293,55 @@ TEST(CEncoder, ANumberGoesWithEachPacketAndComesBack) {
   EXPECT_GT(last[0], 3u);
   EXPECT_GT(last[1], 3u);
   EXPECT_EQ(keys, 2u) << "the first of each; all others build on what was acknowledged";
+}
+
+/// A transport that numbers all that it sends: packets have its numbers, and a receiver is told of those that none has.
+TEST(CEncoder, ATransportMayGiveTheNumbers) {
+  auto unsmoothed = filled<tactus_scene_options>();
+  unsmoothed.rigid_profile = TACTUS_PROFILE_THESIS;
+  const Scene scene = make_scene(false, &unsmoothed);
+  const Sender sender = make_sender(scene);
+  auto late = filled<tactus_receiver_options>();
+  late.interpolation = TACTUS_INTERPOLATION_PLAYOUT;
+  const Receiver receiver = make_receiver(scene, &late), uninformed = make_receiver(scene, &late);
+  std::array<tactus_rigid_sample, 2> objects{};
+  for (tactus_rigid_sample& object : objects) object.pose.rotation[0] = 1;
+  objects[1].pose.position[2] = 0.05;
+  auto truth = filled<tactus_truth>();
+  truth.objects = objects.data();
+  truth.object_count = objects.size();
+  constexpr std::uint64_t kFirst = 1000, kEvery = 3;
+  const auto x = [&](const Receiver& of, std::int64_t tick) {
+    tactus_pose pose{};
+    EXPECT_EQ(tactus_receiver_poses(of.get(), tick, 1, 1, &pose, nullptr, nullptr), TACTUS_OK);
+    return pose.position[0];
+  };
+  for (std::int64_t i = 0; i < 3; ++i) {  // it jumps, then rests
+    objects[1].pose.position[0] = 0.1 * static_cast<double>(i + 1);
+    truth.number = kFirst + kEvery * static_cast<std::uint64_t>(i);
+    const auto packets = encode(sender, 10 * i, &truth);
+    ASSERT_EQ(packets.size(), 1u);
+    EXPECT_EQ(packets[0].info.number, truth.number);
+    for (const Receiver* to : {&receiver, &uninformed}) ASSERT_EQ(push(*to, packets[0], TACTUS_PACKET_TICK, nullptr), TACTUS_OK);
+    for (std::uint64_t none = 1; none < kEvery; ++none)
+      ASSERT_EQ(tactus_receiver_push(receiver.get(), truth.number + none, nullptr, 0, TACTUS_PACKET_TICK, nullptr, nullptr),
+                TACTUS_OK);
+  }
+  EXPECT_NEAR(x(receiver, 5), 0.1, 1e-3) << "no packet was lost: it rests until the next update";
+  EXPECT_NEAR(x(uninformed, 5), 0.15, 1e-3) << "a packet may be lost: a way from one update to the next";
+  EXPECT_REFUSED("R-API-5", tactus_receiver_push, receiver.get(), 0, nullptr, 0, TACTUS_PACKET_TICK, nullptr);
+  auto encoded = sized<tactus_encoded>();
+  truth.number = kFirst;
+  EXPECT_REFUSED("R-API-5", tactus_sender_encode, sender.get(), 30, &truth, &encoded);
+}
+
+/// What is reserved is for a later version: a program that sets it expects what this library does not do.
+TEST(CEncoder, WhatIsReservedIsZero) {
+  const Scene scene = make_scene();
+  auto options = filled<tactus_sender_options>();
+  options.reserved = 1;
+  tactus_sender* raw = nullptr;
+  EXPECT_REFUSED("R-API-12", tactus_sender_create, scene.get(), &options, &raw);
 }
 
 /// What is left open depends on the bound that is declared.

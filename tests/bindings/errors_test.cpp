@@ -211,7 +211,8 @@ TEST(CErrors, ReceiverRefuses) {
   EXPECT_REFUSED(kBad, tactus_receiver_push, receiver.get(), 1, &byte, 1, 0, &small);
   for (const std::uint64_t number : {std::uint64_t{0}, std::uint64_t{1} << 62, UINT64_MAX})
     EXPECT_REFUSED("R-API-5", tactus_receiver_push, receiver.get(), number, &byte, 1, TACTUS_PACKET_TICK, nullptr);
-  EXPECT_REFUSED("R-PKT-6", tactus_receiver_push, receiver.get(), 1, nullptr, 0, TACTUS_PACKET_TICK, nullptr);
+  EXPECT_REFUSED("R-PKT-6", tactus_receiver_push, receiver.get(), 1, &byte, 0, TACTUS_PACKET_TICK, nullptr);
+  EXPECT_REFUSED("R-API-5", tactus_receiver_push, receiver.get(), 0, nullptr, 0, TACTUS_PACKET_TICK, nullptr);
   EXPECT_REFUSED(kBad, tactus_receiver_poses, receiver.get(), 0, 0, 3, poses, nullptr);
   EXPECT_REFUSED(kBad, tactus_receiver_poses, receiver.get(), 0, 3, 0, poses, nullptr);
   EXPECT_REFUSED(kBad, tactus_receiver_poses, receiver.get(), 0, 1, SIZE_MAX, poses, nullptr);

@@ -56,6 +56,7 @@ TYPED_TEST_SUITE(AnOlderProgram, Sized);
 
 TYPED_TEST(AnOlderProgram, HasTheDefaultsOfWhatItDoesNotKnow) {
   auto bytes = block(sizeof(TypeParam), 0x5a);
+  if constexpr (requires(TypeParam & given) { given.reserved; }) as<TypeParam>(bytes)->reserved = 0;
   Grown<TypeParam> defaults{};
   defaults.later = 7;
   const auto taken = c::given_or(as<const Grown<TypeParam>>(bytes), defaults);
@@ -283,7 +284,7 @@ TEST_F(CSizes, OfAnEncoder) {
             taking<tactus_elastic_physics>(deform_elastic),
             {136}},
            {"sender_options", 64, Direction::option, initialised<tactus_sender_options>(), taking<tactus_sender_options>(send)},
-           {"truth", 72, Direction::option, initialised<tactus_truth>(), taking<tactus_truth>(encode_nothing), {88}},
+           {"truth", 72, Direction::option, initialised<tactus_truth>(), taking<tactus_truth>(encode_nothing), {88, 96}},
            {"packet_info", 56, Direction::answer, {}, taking<tactus_packet_info>(info_of)}})
     check_sizes(call);
 }

@@ -5,6 +5,7 @@
 #include <tactus/metrics/deformable_errors.h>
 #include <tactus/metrics/errors.h>
 #include <tactus/scene/scene_syntax.h>
+#include <tactus/thesis/thesis.h>
 #include <tactus/trace/trace_scene.h>
 
 #include <filesystem>
@@ -166,7 +167,7 @@ TEST_F(CTrace, BecomesASceneThatDeclaresBounds) {
   ASSERT_EQ(tactus_trace_scene(trace.get(), &coding, nullptr, 0, &size, nullptr), TACTUS_BUFFER_TOO_SMALL);
   std::vector<std::uint8_t> bytes(size);
   ASSERT_EQ(tactus_trace_scene(trace.get(), &coding, bytes.data(), size, &size, nullptr), TACTUS_OK);
-  const auto scene = parse_scene(bytes).value().scene;
+  const auto scene = parse_scene(bytes, {.thesis = &thesis_component}).value().scene;
   EXPECT_FALSE(scene->is_smoothed);
   EXPECT_EQ(scene->deformables.at(0).profile, DeformableProfile::thesis);
   EXPECT_EQ(scene->baseline_span, 7);

@@ -7,6 +7,7 @@
 #include <tactus/client/replica.h>
 #include <tactus/rigid/device_path.h>
 #include <tactus/scene/scene_builder.h>
+#include <tactus/thesis/thesis.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactus;
@@ -25,8 +26,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr Interpolation kInterpolations[] = {Interpolation::none, Interpolation::linear, Interpolation::playout,
                                                Interpolation::hermite, Interpolation::blending};
   if (size > 0) options.interpolation = kInterpolations[data[0] % 5];
-  if (!Replica::check(options, *scene)) options.interpolation = Interpolation::none;
-  Replica replica(*scene, options, {}, known);
+  if (!Replica::check(options, *scene, &thesis_component)) options.interpolation = Interpolation::none;
+  Replica replica(*scene, options, {}, known, &thesis_component);
   constexpr std::size_t kStep = 40;
   std::int64_t now = 0;
   std::uint64_t number = 1;

@@ -61,7 +61,7 @@ struct Ends {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   ByteReader in({data, size});
   const std::uint8_t choice = in.u8();
-  const SharedScene scene = Scene::create(strip(choice)).value();
+  const SharedScene scene = Scene::create(strip(choice), kStripLimits).value();
   SenderOptions options;
   const bool has_answers = (choice & 224) == 96;  // the receiver's: any packet may be lost, but not of a layered object
   if (has_answers) options.policy.baseline = Baseline::acknowledged;

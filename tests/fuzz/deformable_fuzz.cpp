@@ -8,7 +8,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactus;
   if (size == 0) return 0;
-  const SharedScene scene = Scene::create(strip(data[0])).value();
+  const SharedScene scene = Scene::create(strip(data[0]), kStripLimits).value();
   auto receiver = Receiver::create(scene).value();
   auto twin = Receiver::create(scene).value();
   push_packets({data + 1, size - 1}, receiver, twin, [&](const DecodedPacket& packet) {

@@ -6,14 +6,16 @@
 #include <tactus/receiver.h>
 #include <tactus/scene/scene_syntax.h>
 #include <tactus/sender.h>
+#include <tactus/thesis/thesis.h>
 #include "tests/fuzz/require.h"
 
 namespace {
 
 using namespace tactus;
 
-constexpr DecodeLimits kLimits{.state_bytes = 1u << 24};  // few bytes can ask for many states, which take long to make
-constexpr DecodeLimits kParsed{.basis_work = 1u << 12};   // or for a basis
+constexpr DecodeLimits kLimits{.state_bytes = 1u << 24,
+                               .thesis = &thesis_component};  // few bytes can ask for many states, which take long to make
+constexpr DecodeLimits kParsed{.basis_work = 1u << 12, .thesis = &thesis_component};  // or for a basis
 
 void check_ends(const SharedScene& scene) {
   const auto receiver = Receiver::create(scene, {.replica = {}, .limits = kLimits});
@@ -41,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(parsed->size <= size);
   const auto written = write_scene(*parsed->scene);
   require(written.has_value());
-  const auto again = parse_scene(*written);
+  const auto again = parse_scene(*written, kParsed);
   require(again && write_scene(*again->scene).value() == *written);
   check_ends(parsed->scene);
   return 0;

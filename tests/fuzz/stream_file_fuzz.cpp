@@ -4,14 +4,16 @@
 #include <vector>
 
 #include <tactus/player.h>
+#include <tactus/thesis/thesis.h>
 #include "tests/fuzz/packets.h"
 
 namespace {
 
 using namespace tactus;
 
-constexpr DecodeLimits kLimits{.objects = 256, .vertices = 2048};  // decoding takes vertices x packets
-constexpr std::int64_t kDelay = 2;                                 // ticks
+constexpr DecodeLimits kLimits{
+    .objects = 256, .vertices = 2048, .thesis = &thesis_component};  // decoding takes vertices x packets
+constexpr std::int64_t kDelay = 2;                                   // ticks
 
 struct Heard {
   std::size_t records = 0;

@@ -11,8 +11,12 @@
 #include <tactus/deformable/displacement.h>
 #include <tactus/mesh/graph.h>
 #include <tactus/scene/scene.h>
+#include <tactus/thesis/thesis.h>
 
 namespace tactus {
+
+/// Limits of those who make a scene of it, or decode one.
+inline constexpr DecodeLimits kStripLimits{.thesis = &thesis_component};
 
 /// in   choice  bits: 1 profile thesis, 2 models kept (thesis) or a basis (main), 4 several baselines, 8 clusters (main, in place of a basis), 128 layered (main)
 inline SceneSpec strip(std::uint8_t choice) {

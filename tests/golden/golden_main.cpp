@@ -12,6 +12,7 @@
 #include <tactus/base/bytes.h>
 #include <tactus/rigid/device_path.h>
 #include <tactus/tactus.h>
+#include <tactus/thesis/thesis.h>
 #include "tests/golden/golden.h"
 
 namespace {
@@ -96,6 +97,7 @@ bool run(const Case& c) {
   options.triggers.weber_fraction = c.p;
   options.triggers.reduction = c.reduction;
   ReceiverOptions smooth;
+  smooth.limits.thesis = &thesis_component;
   smooth.replica.interpolation = c.profile == RigidProfile::main ? Interpolation::none : Interpolation::linear;
   const auto path = std::make_shared<DevicePath>(device_scene(**scene).value());
   path->shift(0, 0);

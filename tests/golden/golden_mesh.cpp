@@ -11,6 +11,7 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/tactus.h>
+#include <tactus/thesis/thesis.h>
 #include "tests/golden/golden.h"
 
 namespace tactus::golden {
@@ -118,7 +119,7 @@ SharedScene scene_of(const TriMesh& mesh, const Setting& setting) {
       object.cluster_basis.clusters.push_back(static_cast<std::uint8_t>(v * setting.clusters / object.rest.size()));
   }
   spec.deformables.push_back(std::move(object));
-  return Scene::create(std::move(spec)).value();
+  return Scene::create(std::move(spec), {.thesis = &thesis_component}).value();
 }
 
 bool run(const char* name, const Setting& setting) {

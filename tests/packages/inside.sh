@@ -49,7 +49,7 @@ if has libtactus-dev; then
   step 'the program in the head of tactus.h, by pkg-config'
   c++ -std=c++20 umbrella.cpp $(pkg-config --cflags --libs tactus-codec) -o umbrella
   ./umbrella
-  for component in session seal modes surface fem; do
+  for component in thesis session seal modes surface fem; do
     pkg-config --exists tactus-$component || continue
     step "a program of the component $component, by pkg-config"
     c++ -std=c++20 "$component.cpp" $(pkg-config --cflags --libs tactus-$component) -o program
@@ -60,7 +60,7 @@ if has libtactus-dev; then
   cmake -S tests/installed -B cmake-build -DCOMPONENT=codec >cmake.log || { cat cmake.log; die cmake; }
   cmake --build cmake-build >>cmake.log
   cmake-build/consumer
-  for path in README.md LICENSE spec/00-overview.md examples/send_and_receive.cpp; do
+  for path in README.md LICENSE spec/00-overview.md examples/first/First.cs; do
     dpkg -L libtactus-dev | grep -q "^/usr/share/doc/libtactus-dev/.*$path" || die "$path is not in the package"
   done
 fi

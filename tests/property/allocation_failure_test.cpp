@@ -34,19 +34,20 @@ SceneSpec scene(std::uint8_t choice) {
   return spec;
 }
 
-SharedScene shared(SceneSpec&& spec) { return Scene::create(std::move(spec)).value(); }
+SharedScene shared(SceneSpec&& spec) { return Scene::create(std::move(spec), kStripLimits).value(); }
 
 constexpr std::array<std::uint8_t, 5> kChoices{0, 1, 2, 3, 134};  // tests/fuzz/strip.h
 
 TEST(AllocationFailure, Scenes) {
   for (const std::uint8_t choice : kChoices) {
-    EXPECT_GT(fail_each(scene(choice), [](SceneSpec&& s) { return Scene::create(std::move(s)); }), 3u);
-    EXPECT_GT(fail_each(scene(choice), [](const SceneSpec& s) { return check_scene(s); }), 1u);
+    EXPECT_GT(fail_each(scene(choice), [](SceneSpec&& s) { return Scene::create(std::move(s), kStripLimits); }), 3u);
+    EXPECT_GT(fail_each(scene(choice), [](const SceneSpec& s) { return check_scene(s, kStripLimits); }), 1u);
     const SharedScene sound = shared(scene(choice));
     const auto bytes = write_scene(*sound).value();
-    EXPECT_GT(fail_each(bytes, [](const std::vector<std::uint8_t>& b) { return parse_scene(b); }), 5u);
-    EXPECT_GT(fail_each(bytes, [](const std::vector<std::uint8_t>& b) { return StreamFileReader::open(b); }), 5u);
-    EXPECT_GT(fail_each(bytes, [](const std::vector<std::uint8_t>& b) { return Player::open(b); }), 10u);
+    EXPECT_GT(fail_each(bytes, [](const std::vector<std::uint8_t>& b) { return parse_scene(b, kStripLimits); }), 5u);
+    EXPECT_GT(fail_each(bytes, [](const std::vector<std::uint8_t>& b) { return StreamFileReader::open(b, kStripLimits); }), 5u);
+    EXPECT_GT(fail_each(bytes, [](const std::vector<std::uint8_t>& b) { return Player::open(b, {.limits = kStripLimits}); }),
+              10u);
     EXPECT_GT(fail_each(sound, [](const SharedScene& s) { return write_scene(*s); }), 3u);
   }
 }

@@ -16,6 +16,7 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/tactus.h>
+#include <tactus/thesis/thesis.h>
 #include "tests/fuzz/sections.h"
 #include "tests/property/allocated.h"
 #include "tests/property/earned.h"
@@ -25,6 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
+
+constexpr DecodeLimits kWithThesis{.thesis = &thesis_component};
 
 /// Files up to a size are damaged at every byte, larger ones at so many. Receivers of deformable objects take longer to set up; streams
 /// for clients are many, and much like others to a receiver.
@@ -77,7 +80,7 @@ const char* survive(std::span<const std::uint8_t> bytes) {
   const auto exact = std::make_unique_for_overwrite<std::uint8_t[]>(bytes.size());
   std::ranges::copy(bytes, exact.get());
   const std::uint64_t start = testing::allocated_bytes();
-  auto reader = StreamFileReader::open({exact.get(), bytes.size()});
+  auto reader = StreamFileReader::open({exact.get(), bytes.size()}, kWithThesis);
   if (!reader) {
     if (testing::allocated_bytes() - start > testing::earned_by_refused(bytes.size(), has_deformables(bytes)))
       return "a refused declaration allocates too much";
@@ -124,7 +127,8 @@ class EveryVector : public ::testing::TestWithParam<const char*> {
       if (path.parent_path().filename() != GetParam()) continue;
       ++files;
       const Bytes file = read_file(path);
-      const Offsets rigid = path.parent_path().filename() == "client" ? kOfClients : Offsets{};
+      const bool is_of_client = path.parent_path().filename() == "client" || path.parent_path().filename() == "thesis";
+      const Offsets rigid = is_of_client ? kOfClients : Offsets{};
       for (const std::size_t at : offsets(file.size(), files, has_deformables(file) ? kOfDeformables : rigid)) {
         const char* wrong = damage(file, at);
         ASSERT_EQ(wrong, nullptr) << path << " byte " << at << ": " << wrong;
@@ -174,7 +178,7 @@ TEST_P(EveryVector, OneByteMore) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Hostile, EveryVector,
-                         ::testing::Values("scene", "file", "packet", "range", "rigid", "client", "deformable"),
+                         ::testing::Values("scene", "file", "packet", "range", "rigid", "client", "deformable", "thesis"),
                          [](const auto& stem) { return std::string(stem.param); });
 
 TEST(Hostile, TheCounterCounts) {

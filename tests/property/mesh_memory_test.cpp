@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <tactus/tactus.h>
+#include <tactus/thesis/thesis.h>
 #include "tests/property/allocated.h"
 #include "tests/property/earned.h"
 
@@ -21,10 +22,12 @@ namespace {
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
 
+constexpr DecodeLimits kWithThesis{.thesis = &thesis_component};
+
 /// Parses the declaration, makes a receiver, hands it each packet.   out  deformable objects in the scene
 std::size_t watch(const Bytes& bytes) {
   const std::uint64_t start = testing::allocated_bytes();
-  auto reader = StreamFileReader::open(bytes);
+  auto reader = StreamFileReader::open(bytes, kWithThesis);
   if (!reader) return 0;
   const Scene& scene = *reader->scene();
   auto receiver = Receiver::create(reader->scene()).value();
@@ -48,7 +51,7 @@ TEST(MeshMemory, OfEveryVector) {
   EXPECT_GT(objects, 100U);
 }
 
-Bytes declared(SceneSpec&& spec) { return write_scene(*Scene::create(std::move(spec)).value()).value(); }
+Bytes declared(SceneSpec&& spec) { return write_scene(*Scene::create(std::move(spec), kWithThesis).value()).value(); }
 
 DeformableObject points(std::uint32_t vertices) {
   DeformableObject object;
@@ -124,7 +127,7 @@ TEST(MeshMemory, OfAStreamOfManyMeshes) {
     const std::uint64_t states = state_bytes(spec);
     const Bytes bytes = declared(std::move(spec));
     const std::uint64_t start = testing::allocated_bytes();
-    const auto reader = StreamFileReader::open(bytes);
+    const auto reader = StreamFileReader::open(bytes, kWithThesis);
     const auto receiver = Receiver::create(reader->scene());
     ASSERT_TRUE(receiver);
     const std::uint64_t models = 4 * (254 + (std::uint64_t{1} << object.quant_bits));  // made once, then copied

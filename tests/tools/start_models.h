@@ -15,6 +15,7 @@
 
 #include <tactus/base/range_coder.h>
 #include <tactus/file/stream_file.h>
+#include <tactus/thesis/thesis.h>
 
 namespace tactus {
 
@@ -70,7 +71,8 @@ bool count_files(std::span<char*> paths, Count count) {
   for (const char* path : paths) {
     std::ifstream in(path, std::ios::binary);
     const std::vector<char> text{std::istreambuf_iterator<char>(in), {}};
-    auto reader = StreamFileReader::open({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    auto reader =
+        StreamFileReader::open({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, {.thesis = &thesis_component});
     std::vector<std::span<const std::uint8_t>> packets;
     bool good = in && reader;
     while (good) {

@@ -165,7 +165,7 @@ TEST_P(AcknowledgedShapes, NoLossStopsDeformableObjects) {
   spec.baseline_span = 8;
   spec.deformables[0].quant_bits = 12;
   spec.deformables[0].models_kept = kept;
-  const SharedScene scene = testing::shared(std::move(spec));
+  const SharedScene scene = testing::shared(std::move(spec), testing::kWithThesis);
   const DeformableThresholds thresholds{2.5e-4, 0.025};
   for (const Channel& channel : kChannels) {
     testing::DentedSheet sheet(mesh, kWide);

@@ -33,7 +33,8 @@ TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
     spec.motion = {{0, 0, -1285816}, 321454};
     const SharedScene scene = testing::shared(spec);
     auto sender = Sender::create(scene, {.policy = {.key_interval = 0.2}}).value();
-    auto receiver = Receiver::create(scene, {.replica = {.interpolation = interpolation}, .limits = {}}).value();
+    auto receiver =
+        Receiver::create(scene, {.replica = {.interpolation = interpolation}, .limits = testing::kWithThesis}).value();
     std::vector<testing::Motion> motions;
     for (std::size_t i = 0; i < kObjects; ++i) motions.emplace_back(i);
     std::vector<RigidSample> samples(kObjects);
@@ -68,7 +69,7 @@ TEST(Allocation, ASceneOfSeveralSubstreamsAllocatesNothing) {
                                 .deformable("waves", mesh, {.basis = testing::wave_basis(mesh, 6, 3)})
                                 .deformable("thesis", mesh, {.profile = DeformableProfile::thesis, .models_kept = true})
                                 .baselines(4)
-                                .build()
+                                .build(testing::kWithThesis)
                                 .value();
   for (const Baseline baseline : {Baseline::previous, Baseline::acknowledged}) {
     auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.baseline = baseline}}).value();

@@ -39,7 +39,7 @@ Recorded record(const Coding& coding, std::uint8_t span = 1) {
   spec.baseline_span = span;
   spec.deformables[0].models_kept = profile == DeformableProfile::thesis;
   spec.deformables[0].layered = layered;
-  Recorded out{testing::shared(std::move(spec)), {}};
+  Recorded out{testing::shared(std::move(spec), testing::kWithThesis), {}};
   testing::DentedSheet sheet(mesh, kSquares);
   testing::SheetEnds ends(out.scene);
   for (std::int64_t k = 0; k < 40; ++k)

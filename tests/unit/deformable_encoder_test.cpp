@@ -110,39 +110,9 @@ TEST(DeformableMain, DependentModesDoNoHarm) {
   EXPECT_EQ(run_sheet(sheet_spec(mesh, DeformableProfile::main, basis), {}, 200).broken, 0U);
 }
 
-TEST(DeformableThesis, EndsAgreeAndErrorsStayWithinThresholdAndQuantiser) {
-  for (const bool kept : {false, true}) {
-    for (const std::uint8_t bits : {std::uint8_t{1}, std::uint8_t{8}, std::uint8_t{12}}) {
-      SceneSpec spec = sheet_spec(testing::sheet(kSquares, kSquares), DeformableProfile::thesis);
-      spec.deformables[0].quant_bits = bits;
-      spec.deformables[0].models_kept = kept;
-      const Sent run = run_sheet(spec, {2.5e-4, 0.025}, 300);
-      EXPECT_GT(run.packets, 100U);
-      if (bits == 12) {  // one bit per component cannot
-        EXPECT_LT(run.worst, 2.5e-4 + 1e-6);
-      }
-    }
-  }
-}
-
-TEST(DeformableThesis, ListsWhatReachesAThreshold) {
-  SheetEnds ends(shared(sheet_spec(testing::sheet(4, 4), DeformableProfile::thesis)), with({1e-3, 0.1, 0}));
-  SheetFrame frame{moved_by(25, {}), SurfaceTouch{0, 1.0, 1000}};  // h = 0.1 mm
-  const double unit = std::ldexp(1.0, -22);
-  set_vertex(frame.displacements, 0, {0, 0, 1e-4 + unit});      // in the area of interest, above h
-  set_vertex(frame.displacements, 1, {0, 0, 1e-4 - 2 * unit});  // and below
-  set_vertex(frame.displacements, 24, {0, 1e-3 + unit, 0});     // three rings away from triangle 0 there is no vertex 24
-  ends.send(0, frame);
-  const auto shown = ends.receiver.decoded_displacements(0);
-  EXPECT_NE(shown[0], Vec3i{});
-  EXPECT_EQ(shown[1], Vec3i{});
-  EXPECT_NE(shown[24], Vec3i{});
-  EXPECT_EQ(std::ranges::count(shown, Vec3i{}), 23);
-}
-
 TEST(DeformableExtremes, OneVertexWithoutTriangle) {
   for (const DeformableProfile profile : {DeformableProfile::thesis, DeformableProfile::main}) {
-    SheetEnds ends(shared(sheet_spec({{{0, 0, 0}}, {}}, profile)));
+    SheetEnds ends(shared(sheet_spec({{{0, 0, 0}}, {}}, profile), testing::kWithThesis));
     for (std::int64_t k = 0; k < 50; ++k) {
       const SheetFrame frame{moved_by(1, {1e-3 * static_cast<double>(k), 0, 0}), {}};
       ends.send(k, frame);
@@ -171,7 +141,7 @@ TEST(DeformableExtremes, RangeLimitsAndJumps) {
   for (const DeformableProfile profile : {DeformableProfile::thesis, DeformableProfile::main}) {
     const ModeBasis basis = profile == DeformableProfile::main ? testing::wave_basis(mesh, 3, 3) : ModeBasis{};
     const DeformableThresholds exact{0, {}};
-    SheetEnds ends(shared(sheet_spec(mesh, profile, basis)), with(exact));
+    SheetEnds ends(shared(sheet_spec(mesh, profile, basis), testing::kWithThesis), with(exact));
     BoundWatch watch(*ends.sender.scene(), exact);
     for (std::int64_t k = 0; k < 40; ++k) {
       const double far = k % 2 == 0 ? 32.0 : -32.0;  // 2^27 units of 2^-22 m
@@ -263,7 +233,7 @@ TEST(DeformableEncoder, HoldsWhatIsNotFiniteOrOutOfRangeAndGoesOn) {
   for (const DeformableProfile profile : {DeformableProfile::thesis, DeformableProfile::main}) {
     const TriMesh mesh = testing::sheet(kSquares, kSquares);
     DentedSheet sheet(mesh, kSquares);
-    SheetEnds ends(shared(sheet_spec(mesh, profile)));
+    SheetEnds ends(shared(sheet_spec(mesh, profile), testing::kWithThesis));
     const SheetFrame good = sheet.frame(20);
     ends.send(0, good);
     std::int64_t tick = 0;
@@ -349,7 +319,7 @@ TEST(DeformableEncoder, AllocatesNothingAfterSetUp) {
     spec.deformables[0].models_kept = true;
     spec.baseline_span = 3;
     DentedSheet sheet(mesh, kSquares);
-    SheetEnds ends(shared(spec), {.triggers = {}, .deformable = {}, .policy = {.key_interval = 0.3}});
+    SheetEnds ends(shared(spec, testing::kWithThesis), {.triggers = {}, .deformable = {}, .policy = {.key_interval = 0.3}});
     std::vector<SheetFrame> frames;
     for (std::int64_t k = 0; k < 120; ++k) frames.push_back(sheet.frame(k));
     const std::uint64_t before = testing::allocated_bytes();

@@ -211,8 +211,17 @@ inline SharedScene scene_of_every_kind(std::uint32_t squares, std::uint8_t span 
       .deformable("waves", mesh, {.basis = wave_basis(mesh, squares, 3)})
       .deformable("thesis", mesh, {.profile = DeformableProfile::thesis, .models_kept = true})
       .baselines(span)
-      .build()
+      .build(kWithThesis)
       .value();
+}
+
+/// So many sheets of two triangles, and a rigid object with these degrees of freedom.
+inline SharedScene scene_of_sheets(std::size_t deformables, std::uint8_t dof) {
+  SceneSpec spec = sheet_spec(sheet(1, 1));
+  spec.deformables.resize(deformables, spec.deformables[0]);
+  for (std::size_t i = 0; i < deformables; ++i) spec.deformables[i].name = "sheet " + std::to_string(i);
+  spec.objects.push_back({"box", dof, {}});
+  return shared(std::move(spec));
 }
 
 }  // namespace tactus::testing

@@ -30,7 +30,7 @@ SharedScene scene_of(const TriMesh& mesh, DeformableProfile profile, bool layere
   SceneSpec spec = testing::sheet_spec(mesh, profile);
   spec.deformables[0].layered = layered;
   spec.baseline_span = span;
-  return testing::shared(std::move(spec));
+  return testing::shared(std::move(spec), testing::kWithThesis);
 }
 
 SenderOptions options(double key_interval, const DeformableThresholds& thresholds = {}) {
@@ -295,59 +295,6 @@ TEST(DeformableLayers, BoundsHoldWithAcknowledgedBaselinesToo) {
     seen.look(frame, ends.shown(k));
   }
   EXPECT_EQ(seen.broken(), 0U) << "worst " << seen.worst() << " m";
-}
-
-TEST(DeformableLayers, ThesisListsWhatIsRenderedInAPacketOfItsOwn) {
-  const TriMesh mesh = testing::sheet(kSquares, kSquares);
-  SceneSpec spec = testing::sheet_spec(mesh, DeformableProfile::thesis);
-  spec.deformables[0].quant_bits = 12;
-  spec.deformables[0].layered = true;
-  const SharedScene scene = testing::shared(std::move(spec));
-  SheetEnds ends(scene, options(1));
-  DentedSheet sheet(mesh, kSquares);
-  BoundWatch watch(*scene, {});
-  Rings rings(scene->deformables[0]);
-  std::vector<Vec3i> before(mesh.vertices.size());
-  for (std::int64_t k = 0; k < kFrames; ++k) {
-    const SheetFrame frame = sheet.frame(k);
-    for (const Packet& packet : testing::all(ends.encode(k, frame))) {
-      ends.deliver(packet, k);
-      if (packet.layer != Layer::haptic || packet.key) continue;
-      rings.triangles_around(frame.touch->triangle, scene->deformables[0].rings);
-      const auto shown = ends.receiver.decoded_displacements(0);
-      for (std::uint32_t v = 0; v < before.size(); ++v) {
-        if (std::ranges::count(rings.vertices(), v) > 0) continue;
-        ASSERT_EQ(shown[v], before[v]);
-      }
-    }
-    ends.agree(k);
-    if (HasFatalFailure()) return;
-    const auto shown = ends.receiver.decoded_displacements(0);
-    before.assign(shown.begin(), shown.end());
-    watch.look(frame, shown);
-  }
-  EXPECT_LT(watch.worst(), DeformableThresholds{}.visual + 1e-6);
-  EXPECT_GT(ends.layers[0], 100U);
-  EXPECT_GT(ends.layers[1], 100U);
-  EXPECT_EQ(ends.layers[2], 0U);
-}
-
-/// A key packet that would list nothing, because the object is back in the initial state.
-TEST(DeformableLayers, ThesisKeyPacketsListAVertexAtLeast) {
-  const TriMesh mesh = testing::sheet(kSquares, kSquares);
-  for (const bool layered : {false, true}) {
-    SheetEnds ends(scene_of(mesh, DeformableProfile::thesis, layered), options(0.1));
-    for (std::int64_t k = 0; k < 60; ++k) {
-      const SheetFrame frame{testing::moved_by(mesh.vertices.size(), {0, 0, k % 13 < 6 ? 0.01 : 0}),
-                             k % 2 == 0 ? std::optional(SurfaceTouch{5, 1, 500}) : std::nullopt};
-      ends.send(k, frame);
-      if (HasFatalFailure()) return;
-      for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-        ASSERT_LT(norm(to_metres(ends.receiver.decoded_displacements(0)[v], 22) - testing::vertex_of(frame.displacements, v)),
-                  3e-4)
-            << k;
-    }
-  }
 }
 
 TEST(DeformableLayers, AllocatesNothingAfterSetUp) {

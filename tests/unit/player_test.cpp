@@ -98,7 +98,7 @@ TEST(Player, OptionsAndLimitsAreTheReceivers) {
   EXPECT_EQ(Player::open(std::span(file).first(10)).error().code, Errc::truncated);
   auto narrow = Player::open(file, {.replica = {}, .limits = {.packet_bytes = 5}}).value();
   EXPECT_STREQ(narrow.play(10).error().rule, "R-PKT-1");
-  auto smooth = Player::open(file, {.replica = {.interpolation = Interpolation::linear}, .limits = {}}).value();
+  auto smooth = Player::open(file, {.replica = {.interpolation = Interpolation::linear}, .limits = testing::kWithThesis}).value();
   EXPECT_TRUE(*smooth.play(10));
   EXPECT_TRUE(*smooth.play(20));
   EXPECT_NEAR(shown_x(smooth, 20), 1, 0.006) << "an interpolation begins where the object was shown";
@@ -116,7 +116,7 @@ class Recorded {
                 .rigid("cube")
                 .deformable("main", mesh, {.layered = true})
                 .deformable("thesis", mesh, {.profile = DeformableProfile::thesis})
-                .build()
+                .build(testing::kWithThesis)
                 .value();
     auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.key_interval = 0.5}}).value();
     auto receiver = Receiver::create(scene).value();
@@ -155,7 +155,7 @@ class Recorded {
 
 TEST(Player, ShowsOfEverySubstreamWhatAReceiverShows) {
   const Recorded recorded;
-  auto player = Player::open(recorded.file).value();
+  auto player = Player::open(recorded.file, {.limits = testing::kWithThesis}).value();
   std::array<std::size_t, 3> packets{};
   for (std::int64_t tick = 0; tick < Recorded::kTicks; ++tick) {
     for (;;) {
@@ -218,7 +218,7 @@ TEST(Player, ReportsTheFileOffsetOfADamagedPacketAndGoesOn) {
   const Recorded recorded;
   std::ostringstream out;
   auto writer = StreamFileWriter::create(out, *recorded.scene).value();
-  auto reader = StreamFileReader::open(recorded.file).value();
+  auto reader = StreamFileReader::open(recorded.file, testing::kWithThesis).value();
   std::size_t count = 0;
   while (const auto packet = reader.next().value()) {
     Bytes bytes(packet->bytes.begin(), packet->bytes.end());
@@ -227,7 +227,7 @@ TEST(Player, ReportsTheFileOffsetOfADamagedPacketAndGoesOn) {
   }
   ASSERT_TRUE(writer.finish());
   const Bytes file = bytes_of(out);
-  auto player = Player::open(file).value();
+  auto player = Player::open(file, {.limits = testing::kWithThesis}).value();
   std::size_t played = 0, refused = 0, end = 0;
   while (player.next_tick().value()) {
     const auto packet = player.play(Recorded::kTicks);

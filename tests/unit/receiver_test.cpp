@@ -245,7 +245,7 @@ TEST(Receiver, ShowsPosesAndShapesInMetres) {
 TEST(Receiver, AClientMayShowAPacketLater) {
   const SharedScene scene = testing::scene_of(1);
   auto sender = Sender::create(scene, {.triggers = {.reduction = Reduction::none}, .deformable = {}, .policy = {}}).value();
-  const ReceiverOptions smooth{.replica = {.interpolation = Interpolation::linear}, .limits = {}};
+  const ReceiverOptions smooth{.replica = {.interpolation = Interpolation::linear}, .limits = testing::kWithThesis};
   auto live = Receiver::create(scene, smooth).value(), file = Receiver::create(scene, smooth).value();
   RigidSample sample;
   for (std::int64_t tick = 0; tick <= 80; tick += 40) {

@@ -12,8 +12,12 @@
 #include <vector>
 
 #include <tactus/tactus.h>
+#include <tactus/thesis/thesis.h>
 
 namespace tactus::testing {
+
+/// Limits of a receiver that has component thesis.
+inline constexpr DecodeLimits kWithThesis{.thesis = &thesis_component};
 
 inline SceneSpec spec_of(std::size_t objects, std::uint8_t dof = Dof::all) {
   SceneSpec spec;
@@ -26,7 +30,9 @@ inline SceneSpec spec_of(std::size_t objects, std::uint8_t dof = Dof::all) {
 }
 
 /// pre  the declaration breaks no rule
-inline SharedScene shared(SceneSpec spec) { return Scene::create(std::move(spec)).value(); }
+inline SharedScene shared(SceneSpec spec, const DecodeLimits& limits = {}) {
+  return Scene::create(std::move(spec), limits).value();
+}
 inline SharedScene scene_of(std::size_t objects, std::uint8_t dof = Dof::all) { return shared(spec_of(objects, dof)); }
 
 /// The packets of a call. A span of its own: `for (auto& p : sender.encode(..).value())` would walk in what is gone.

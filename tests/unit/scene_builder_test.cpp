@@ -104,7 +104,7 @@ TEST(SceneBuilder, DeformableObjectsAndTheirCoding) {
   DeformableCoding main{.rings = 5, .frame_period = 50.0 / 3, .layered = true, .basis = basis};
   DeformableCoding thesis{
       .profile = DeformableProfile::thesis, .quant_bits = 11, .models_kept = true, .layered = true, .basis = basis};
-  const auto built = SceneBuilder().deformable("a", mesh, main).deformable("b", mesh, thesis).build();
+  const auto built = SceneBuilder().deformable("a", mesh, main).deformable("b", mesh, thesis).build(testing::kWithThesis);
   ASSERT_TRUE(built);
   const DeformableObject &a = (*built)->deformables[0], &b = (*built)->deformables[1];
   EXPECT_EQ(a.name, "a");
@@ -149,7 +149,7 @@ TEST(SceneBuilder, DeclaredBoundsAreThoseOfItsObjects) {
   const RigidTriggers rigid{.visual_position = 0.011};
   const DeformableThresholds deformable{.visual = 3e-4};
   const auto with = [&](SceneBuilder builder) {
-    return builder.declare_bounds(rigid, deformable).build().value()->bounds.value();
+    return builder.declare_bounds(rigid, deformable).build(testing::kWithThesis).value()->bounds.value();
   };
   const StreamBounds both =
       with(SceneBuilder().rigid("cube").deformable("m", mesh).deformable("t", mesh, {.profile = DeformableProfile::thesis}));
@@ -161,7 +161,7 @@ TEST(SceneBuilder, DeclaredBoundsAreThoseOfItsObjects) {
 }
 
 std::string refusal(SceneBuilder builder) {
-  const auto built = builder.build();
+  const auto built = builder.build(testing::kWithThesis);
   if (built) return "none";
   EXPECT_EQ(Error(built.error()).rule, built.error().error.rule) << "a finding is an error, too";
   return std::string(built.error().error.rule) + " of '" + built.error().object + "'";

@@ -29,8 +29,8 @@ SceneSpec two_deformables() {
 
 TEST(SceneDeformables, RoundTrip) {
   const SceneSpec spec = two_deformables();
-  const auto bytes = write_scene(*testing::shared(spec)).value();
-  const auto parsed = parse_scene(bytes);
+  const auto bytes = write_scene(*testing::shared(spec, testing::kWithThesis)).value();
+  const auto parsed = parse_scene(bytes, testing::kWithThesis);
   ASSERT_TRUE(parsed) << parsed.error().rule;
   EXPECT_EQ(parsed->scene->deformables, spec.deformables);
   EXPECT_EQ(parsed->size, bytes.size());
@@ -39,11 +39,11 @@ TEST(SceneDeformables, RoundTrip) {
 
 TEST(SceneDeformables, StiffnessCostsAByteForEachVertexAndNothingWhereItIsNotDeclared) {
   SceneSpec spec = two_deformables();
-  const auto without = write_scene(*testing::shared(spec)).value();
+  const auto without = write_scene(*testing::shared(spec, testing::kWithThesis)).value();
   spec.deformables[1].stiffness = {0, 1, 97, 255};
-  const auto bytes = write_scene(*testing::shared(spec)).value();
+  const auto bytes = write_scene(*testing::shared(spec, testing::kWithThesis)).value();
   EXPECT_EQ(bytes.size(), without.size() + 3 + 4);  // type, size, object; levels
-  const auto parsed = parse_scene(bytes);
+  const auto parsed = parse_scene(bytes, testing::kWithThesis);
   ASSERT_TRUE(parsed) << parsed.error().rule;
   EXPECT_EQ(parsed->scene->deformables, spec.deformables);
   EXPECT_TRUE(parsed->scene->deformables[0].stiffness.empty());
@@ -57,15 +57,15 @@ TEST(SceneDeformables, StiffnessCostsAByteForEachVertexAndNothingWhereItIsNotDec
 TEST(SceneDeformables, ASceneWithoutThemHasNoByteAboutThem) {
   SceneSpec spec = two_deformables();
   spec.deformables.clear();
-  const auto bytes = write_scene(*testing::shared(spec)).value();
+  const auto bytes = write_scene(*testing::shared(spec, testing::kWithThesis)).value();
   EXPECT_EQ(bytes[6], 0);
   EXPECT_EQ(bytes.size(), 12U + 12U + (3U + 3U + 28U) + 4U);  // fixed part, parameters and count, one object, crc
 }
 
 TEST(SceneDeformables, EveryTruncationIsRefused) {
-  const auto bytes = write_scene(*testing::shared(two_deformables())).value();
+  const auto bytes = write_scene(*testing::shared(two_deformables(), testing::kWithThesis)).value();
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    const auto parsed = parse_scene(std::span(bytes).first(size));
+    const auto parsed = parse_scene(std::span(bytes).first(size), testing::kWithThesis);
     ASSERT_FALSE(parsed);
     EXPECT_EQ(parsed.error().code, Errc::truncated) << size;
   }
@@ -75,7 +75,7 @@ TEST(SceneDeformables, EachRule) {
   const auto rule = [](const auto& change) {
     SceneSpec spec = two_deformables();
     change(spec.deformables[0]);
-    const auto scene = Scene::create(std::move(spec));
+    const auto scene = Scene::create(std::move(spec), testing::kWithThesis);
     return scene ? std::string_view("none") : std::string_view(scene.error().rule);
   };
   EXPECT_EQ(rule([](DeformableObject&) {}), "none");
@@ -106,14 +106,14 @@ TEST(SceneDeformables, ASpringBasisIsComputedAndNotWritten) {
   DeformableObject& object = spec.deformables[0];
   object.basis = {};
   object.spring_basis = {5, {0, 1, 2, 7, 11}};
-  const SharedScene scene = testing::shared(spec);
+  const SharedScene scene = testing::shared(spec, testing::kWithThesis);
   EXPECT_EQ(scene->deformables[0].basis.steps.size(), 5U);
   const auto bytes = write_scene(*scene).value();
-  const auto parsed = parse_scene(bytes);
+  const auto parsed = parse_scene(bytes, testing::kWithThesis);
   ASSERT_TRUE(parsed);
   EXPECT_EQ(parsed->scene->deformables[0], scene->deformables[0]);
   spec.deformables[0].spring_basis = {};
-  EXPECT_EQ(bytes.size(), write_scene(*testing::shared(spec)).value().size() + 1 + 1 + 2 * 3)
+  EXPECT_EQ(bytes.size(), write_scene(*testing::shared(spec, testing::kWithThesis)).value().size() + 1 + 1 + 2 * 3)
       << "mode_count, runs of fixed vertices";
 }
 
@@ -123,23 +123,24 @@ TEST(SceneDeformables, ClustersAreCodedWhereTheyAreNotExpected) {
   object.basis = {};
   object.cluster_basis = {3, 2, std::vector<std::uint8_t>(object.rest.size(), 1)};
   object.cluster_basis.clusters.back() = 2;
-  const SharedScene scene = testing::shared(spec);
+  const SharedScene scene = testing::shared(spec, testing::kWithThesis);
   EXPECT_EQ(scene->deformables[0].basis.steps.size(), 36U);
   const auto bytes = write_scene(*scene).value();
-  const auto parsed = parse_scene(bytes);
+  const auto parsed = parse_scene(bytes, testing::kWithThesis);
   ASSERT_TRUE(parsed);
   EXPECT_EQ(parsed->scene->deformables[0], scene->deformables[0]);
   spec.deformables[0].cluster_basis = {};
-  EXPECT_EQ(bytes.size(), write_scene(*testing::shared(spec)).value().size() + 1 + 1 + 1 + 2 * 2)
+  EXPECT_EQ(bytes.size(), write_scene(*testing::shared(spec, testing::kWithThesis)).value().size() + 1 + 1 + 1 + 2 * 2)
       << "cluster_count, blend, surprises of the first and the last vertex";
 }
 
 TEST(SceneDeformables, RulesOfClusters) {
-  const auto rule = [](const ClusterBasis& basis, std::uint8_t springs = 0, const DecodeLimits& limits = {}) {
+  const auto rule = [](const ClusterBasis& basis, std::uint8_t springs = 0, DecodeLimits limits = {}) {
     SceneSpec spec = two_deformables();
     spec.deformables[0].basis = {};
     spec.deformables[0].cluster_basis = basis;
     spec.deformables[0].spring_basis.modes = springs;
+    limits.thesis = &thesis_component;
     const auto scene = Scene::create(std::move(spec), limits);
     return scene ? std::string_view("none") : std::string_view(scene.error().rule);
   };
@@ -158,10 +159,11 @@ TEST(SceneDeformables, RulesOfClusters) {
 }
 
 TEST(SceneDeformables, RulesOfASpringBasis) {
-  const auto rule = [](const SpringBasis& basis, const DecodeLimits& limits = {}) {
+  const auto rule = [](const SpringBasis& basis, DecodeLimits limits = {}) {
     SceneSpec spec = two_deformables();
     spec.deformables[0].basis = {};
     spec.deformables[0].spring_basis = basis;
+    limits.thesis = &thesis_component;
     const auto scene = Scene::create(std::move(spec), limits);
     return scene ? std::string_view("none") : std::string_view(scene.error().rule);
   };
@@ -191,11 +193,12 @@ TEST(SceneDeformables, EachRuleOfTheReader) {
     bad.erase(bad.begin() + static_cast<std::ptrdiff_t>(at));
     bad.insert(bad.begin() + static_cast<std::ptrdiff_t>(at), bytes.begin(), bytes.end());
     ByteReader reader(bad);
-    const auto parsed = parse_deformable(reader, {1000, 1000});
+    const auto parsed = parse_deformable(reader, {.vertices = 1000, .triangles = 1000});
     return parsed ? std::string_view("none") : std::string_view(parsed.error().rule);
   };
   // profile, name (2), rings, frame_period (4), layered, fade (2), weight_sets, vertices, triangles, 9 coordinates, 3 corners, basis
   EXPECT_EQ(rule(0, {1}), "none");
+  EXPECT_EQ(rule(0, {0}), "R-DEF-2") << "without component thesis";
   EXPECT_EQ(rule(0, {2}), "R-DEF-2");
   EXPECT_EQ(rule(3, {33}), "R-DEF-3");
   EXPECT_EQ(rule(8, {1}), "none");

@@ -10,6 +10,7 @@
 
 #include <tactus/scene/scene_syntax.h>
 #include "tests/unit/elastic_fixture.h"
+#include "tests/unit/rigid_fixture.h"
 
 namespace tactus {
 namespace {
@@ -74,7 +75,7 @@ TEST(ElasticSyntax, AnObjectBesideItNeedsNone) {
 std::string broken(const std::function<void(DeformableObject&)>& change) {
   SceneSpec spec = *elastic_scene();
   change(spec.deformables[0]);
-  const auto scene = Scene::create(std::move(spec));
+  const auto scene = Scene::create(std::move(spec), testing::kWithThesis);
   return scene ? "none" : std::string(scene.error().rule);
 }
 std::string broken_body(const std::function<void(ElasticBody&)>& change) {

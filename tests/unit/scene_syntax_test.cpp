@@ -30,7 +30,7 @@ SceneSpec two_objects() {
   return spec;
 }
 
-Bytes written(SceneSpec spec) { return write_scene(*Scene::create(std::move(spec)).value()).value(); }
+Bytes written(SceneSpec spec) { return write_scene(*testing::shared(std::move(spec), testing::kWithThesis)).value(); }
 
 TEST(SceneSyntax, RoundTrips) {
   const SceneSpec spec = two_objects();
@@ -165,12 +165,12 @@ SceneSpec with_models(int count) {
 
 TEST(SceneSyntax, StatesAreLimitedBeforeAnythingIsBuilt) {
   EXPECT_EQ(state_bytes(with_models(226)), 226u * 1183992);
-  EXPECT_TRUE(Scene::create(with_models(226)));
-  EXPECT_STREQ(Scene::create(with_models(227)).error().rule, "R-STR-18");
-  EXPECT_EQ(Scene::create(with_models(227)).error().code, Errc::limit_exceeded);
+  EXPECT_TRUE(Scene::create(with_models(226), testing::kWithThesis));
+  EXPECT_STREQ(Scene::create(with_models(227), testing::kWithThesis).error().rule, "R-STR-18");
+  EXPECT_EQ(Scene::create(with_models(227), testing::kWithThesis).error().code, Errc::limit_exceeded);
   const Bytes bytes = written(with_models(10));
-  EXPECT_TRUE(parse_scene(bytes, {.state_bytes = 10 * 1183992}));
-  const auto refused = parse_scene(bytes, {.state_bytes = 10 * 1183992 - 1});
+  EXPECT_TRUE(parse_scene(bytes, {.state_bytes = 10 * 1183992, .thesis = &thesis_component}));
+  const auto refused = parse_scene(bytes, {.state_bytes = 10 * 1183992 - 1, .thesis = &thesis_component});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::limit_exceeded);
   EXPECT_STREQ(refused.error().rule, "R-STR-18");
@@ -253,7 +253,7 @@ TEST(StreamBounds, WhatTheSenderDeclaresArrivesToTheBit) {
       if (weber) deformables.depth_floor = 1e-5;
       const SceneSpec spec = with_bounds(with_rule(rule), deformables);
       const auto bytes = written(spec);
-      const auto parsed = parse_scene(bytes);
+      const auto parsed = parse_scene(bytes, testing::kWithThesis);
       ASSERT_TRUE(parsed);
       EXPECT_EQ(parsed->scene->bounds, spec.bounds);
       EXPECT_EQ(write_scene(*parsed->scene).value(), bytes);
@@ -268,7 +268,7 @@ TEST(StreamBounds, ObjectsOfProfileThesisOnlyAimAtThem) {
 }
 
 TEST(StreamBounds, AStreamWithoutThemHasNoByteAboutThem) {
-  EXPECT_FALSE(parse_scene(written(objects()))->scene->bounds);
+  EXPECT_FALSE(parse_scene(written(objects()), testing::kWithThesis)->scene->bounds);
   SceneSpec still = objects();
   still.objects.erase(still.objects.begin());
   still.deformables.clear();
@@ -289,9 +289,9 @@ TEST(StreamBounds, WhatIsNoBoundIsRefused) {
   };
   for (const auto& change : changes) {
     SceneSpec spec = with_bounds({}, {});
-    ASSERT_TRUE(check_scene(spec));
+    ASSERT_TRUE(check_scene(spec, testing::kWithThesis));
     change(*spec.bounds);
-    const auto scene = Scene::create(spec);
+    const auto scene = Scene::create(spec, testing::kWithThesis);
     ASSERT_FALSE(scene) << &change - changes;
     EXPECT_EQ(scene.error().code, Errc::invalid);
     EXPECT_STREQ(scene.error().rule, "R-STR-17");

@@ -361,32 +361,32 @@ TEST(DeviceTickMapping, TheNewestChangesAreSent) {
 
 // ==== session force fade ====
 
-constexpr std::uint64_t kStart = 10'000'000, kMillisecond = 1000;
+constexpr std::uint64_t kStart = 10'000'000, kMillis = 1000;
 
 /// A fade that was looked at each millisecond while news came each millisecond, until all is permitted.
 ForceFade risen() {
   ForceFade fade;
-  EXPECT_EQ(fade.fraction(kStart - 600 * kMillisecond, 0), 0);
-  for (std::uint64_t t = kStart - 599 * kMillisecond; t <= kStart; t += kMillisecond) fade.fraction(t, t);
+  EXPECT_EQ(fade.fraction(kStart - 600 * kMillis, 0), 0);
+  for (std::uint64_t t = kStart - 599 * kMillis; t <= kStart; t += kMillis) fade.fraction(t, t);
   return fade;
 }
 
 TEST(ForceFade, FallsFrom70To100MillisecondsWithoutNews) {
   ForceFade fade = risen();
   for (std::uint64_t age = 0; age <= 70; ++age)
-    EXPECT_EQ(fade.fraction(kStart + age * kMillisecond, kStart), ForceFade::kAll) << age;
-  EXPECT_EQ(fade.fraction(kStart + 85 * kMillisecond, kStart), ForceFade::kAll / 2);
-  EXPECT_EQ(fade.fraction(kStart + 100 * kMillisecond, kStart), 0);
-  for (const std::uint64_t age : {101u, 1000u, 1'000'000u}) EXPECT_EQ(fade.fraction(kStart + age * kMillisecond, kStart), 0);
+    EXPECT_EQ(fade.fraction(kStart + age * kMillis, kStart), ForceFade::kAll) << age;
+  EXPECT_EQ(fade.fraction(kStart + 85 * kMillis, kStart), ForceFade::kAll / 2);
+  EXPECT_EQ(fade.fraction(kStart + 100 * kMillis, kStart), 0);
+  for (const std::uint64_t age : {101u, 1000u, 1'000'000u}) EXPECT_EQ(fade.fraction(kStart + age * kMillis, kStart), 0);
 }
 
 /// A client that computes what its device does waits longer for news.
 TEST(ForceFade, FallsFrom300To400MillisecondsInADrivenScene) {
   ForceFade fade = risen();
   fade.set_limits(ForceFade::kDriven);
-  EXPECT_EQ(fade.fraction(kStart + 300 * kMillisecond, kStart), ForceFade::kAll);
-  EXPECT_EQ(fade.fraction(kStart + 350 * kMillisecond, kStart), ForceFade::kAll / 2);
-  EXPECT_EQ(fade.fraction(kStart + 400 * kMillisecond, kStart), 0);
+  EXPECT_EQ(fade.fraction(kStart + 300 * kMillis, kStart), ForceFade::kAll);
+  EXPECT_EQ(fade.fraction(kStart + 350 * kMillis, kStart), ForceFade::kAll / 2);
+  EXPECT_EQ(fade.fraction(kStart + 400 * kMillis, kStart), 0);
 }
 
 TEST(ForceFade, ReturnsOverHalfASecond) {
@@ -407,7 +407,7 @@ TEST(ForceFade, NeverJumps) {
   std::mt19937_64 random(1);
   std::int64_t before = ForceFade::kAll;
   std::uint64_t heard = kStart, next = kStart;
-  for (std::uint64_t now = kStart; now < kStart + 60'000'000; now += kMillisecond) {
+  for (std::uint64_t now = kStart; now < kStart + 60'000'000; now += kMillis) {
     if (now >= next) {
       heard = now;
       next = now + random() % 200'000;
@@ -423,7 +423,7 @@ TEST(ForceFade, NeverJumps) {
 TEST(ForceFade, StartsWithNothing) {
   ForceFade fade;
   EXPECT_EQ(fade.fraction(kStart, 0), 0);
-  EXPECT_LT(fade.fraction(kStart + kMillisecond, kStart + kMillisecond), ForceFade::kAll / 100);
+  EXPECT_LT(fade.fraction(kStart + kMillis, kStart + kMillis), ForceFade::kAll / 100);
 }
 
 /// A session that begins or comes back while something is touched: nobody looked for a while.
@@ -439,9 +439,9 @@ TEST(ForceFade, RisesSlowlyAfterAPauseToo) {
 TEST(ForceFade, ANewContactNeedNotRise) {
   ForceFade fade;
   fade.release(kStart);
-  EXPECT_EQ(fade.fraction(kStart + kMillisecond, kStart + kMillisecond), ForceFade::kAll);
-  fade.release(kStart + 200 * kMillisecond);
-  EXPECT_EQ(fade.fraction(kStart + 200 * kMillisecond, kStart), 0) << "but not on old news";
+  EXPECT_EQ(fade.fraction(kStart + kMillis, kStart + kMillis), ForceFade::kAll);
+  fade.release(kStart + 200 * kMillis);
+  EXPECT_EQ(fade.fraction(kStart + 200 * kMillis, kStart), 0) << "but not on old news";
 }
 
 }  // namespace

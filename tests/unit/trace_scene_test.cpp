@@ -51,7 +51,7 @@ class SheetTrace {
 };
 
 SharedScene scene_of(const SheetTrace& trace, const TraceCoding& coding = {}) {
-  return scene_builder(trace.info, trace.frame, coding)->build().value();
+  return scene_builder(trace.info, trace.frame, coding)->build(testing::kWithThesis).value();
 }
 
 TEST(TraceScene, LightestTouchCounts) {
@@ -192,7 +192,8 @@ TEST_P(TracedScene, BoundsHoldAndAPlayerShowsTheSame) {
   EXPECT_EQ(traffic.layers[0].packets > 50, layered);
 
   const std::string bytes = file.str();
-  auto player = Player::open({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}).value();
+  auto player =
+      Player::open({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, {.limits = testing::kWithThesis}).value();
   std::size_t played = 0;
   for (std::size_t k = 0; k < shown.size(); ++k) {
     const auto tick = static_cast<std::int64_t>(k);

@@ -24,7 +24,7 @@ extern "C" const char* answer_session(const char* script) {
 /// The answers of `--replica device` to a stream, good until the next call.
 extern "C" const char* answer_with_device(const std::uint8_t* stream, std::size_t size) {
   std::ostringstream out;
-  const auto done = tactus::conformance::report({stream, size}, tactus::Interpolation::none, true, out);
+  const auto done = tactus::conformance::report({stream, size}, {.replica = tactus::Interpolation::none, .device = true}, out);
   if (!done) tactus::conformance::report_error(tactus::errc_name(done.error().code), done.error().rule, out);
   answers = std::move(out).str();
   return answers.c_str();

@@ -124,7 +124,7 @@ class Sender(Handle):
         call(core().tactus_sender_create, handle_of(scene, Scene), self._options, ctypes.byref(self._handle))
 
     def encode(self, tick: int, objects: npt.ArrayLike | None = None, contacts: npt.NDArray[np.void] | None = None,
-               shapes: Sequence[Shape] = (), moved: npt.ArrayLike | None = None) -> list[Packet]:
+               shapes: Sequence[Shape] = (), moved: npt.ArrayLike | None = None, number: int | None = None) -> list[Packet]:
         """Evaluate a tick and code the packets it needs, mostly none.
 
         tick      rising
@@ -134,6 +134,8 @@ class Sender(Handle):
         shapes    one per mesh of the scene, or none
         moved     indices of the objects whose row is not that of the tick before: what rests then costs the encoder nothing. None: all rows are
                   compared. An object that moves and is not named is not sent
+        number    of the packets of this tick, above that of any packet before, as a transport numbers what it sends; a second packet of a
+                  mesh has number + 1. None: each substream counts on, from 1
         raises    Error: a wrong count or tick. One bad row is no error: see held
         """
         states = _array(objects, 13, "objects")
@@ -151,6 +153,10 @@ class Sender(Handle):
             raise ValueError(f"moved has shape {named.shape}, not (M,)")
         if moved is not None:
             truth.moved, truth.moved_count = named.ctypes.data, len(named)
+        if number is not None:
+            if number < 1:
+                raise ValueError(f"a number is above 0, not {number}")
+            truth.number = number
         encoded = answer(_abi.tactus_encoded)
         self.held = []
         call(core().tactus_sender_encode, self.handle, tick, truth, encoded)
@@ -286,6 +292,10 @@ class Receiver(Handle, _Shown):
         info, given = answer(_abi.tactus_packet_info), bytes_of(data)
         call(core().tactus_receiver_push, self.handle, number, given, len(given), PACKET_TICK if now is None else now, info)
         return Packet._of(info)
+
+    def skip_number(self, number: int) -> None:
+        """This number came, and no packet of rigid objects has it: with INTERPOLATION_PLAYOUT the replica need not interpolate over it."""
+        call(core().tactus_receiver_push, self.handle, number, None, 0, PACKET_TICK, None)
 
 
 class Player(Handle, _Shown):

@@ -9,10 +9,11 @@
 #include <tactus/metrics/errors.h>
 #include <tactus/receiver.h>
 #include <tactus/rigid/trigger.h>
-#include <tactus/signal/force_signal.h>
 #include <tactus/sim/random.h>
 #include <tactus/sim/simulation.h>
 #include <tactus/sim/user/hand.h>
+#include <tactus/thesis/force_signal.h>
+#include <tactus/thesis/thesis.h>
 #include "cli/report/table.h"
 #include "lab/study/program/points.h"
 
@@ -30,6 +31,7 @@ Interpolation interpolation_of(const std::string& name) {
 /// "deadband", "visual_position_m", "visual_rotation_rad", "profile".
 sim::ChannelOptions channel_of(Request& request) {
   sim::ChannelOptions out;
+  out.limits.thesis = &thesis_component;
   RigidTriggers& triggers = out.sender.triggers;
   triggers.weber_fraction = request.get("deadband", triggers.weber_fraction);
   triggers.visual_position = request.get("visual_position_m", triggers.visual_position);
@@ -51,7 +53,8 @@ class Watcher {
   explicit Watcher(Receiver receiver) : receiver_(std::move(receiver)) {}
 
   static Result<Watcher> create(const SharedScene& scene, Interpolation interpolation) {
-    TACTUS_TRY(Receiver receiver, Receiver::create(scene, {.replica = {.interpolation = interpolation}, .limits = {}}));
+    TACTUS_TRY(Receiver receiver,
+               Receiver::create(scene, {.replica = {.interpolation = interpolation}, .limits = {.thesis = &thesis_component}}));
     return Watcher(std::move(receiver));
   }
   Result<void> take(std::span<const Packet> packets) {

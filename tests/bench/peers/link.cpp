@@ -8,6 +8,7 @@
 #include <tactus/deformable/motion_clusters.h>
 #include <tactus/receiver.h>
 #include <tactus/sender.h>
+#include <tactus/thesis/thesis.h>
 
 namespace tactus::peers {
 namespace {
@@ -94,7 +95,7 @@ SharedScene scene_of(const Animation& animation, const OurSetting& setting) {
     object.fade = 8000;  // 98 % per second at 30 frames/s
   }
   spec.deformables.push_back(std::move(object));
-  return Scene::create(std::move(spec)).value();
+  return Scene::create(std::move(spec), {.thesis = &thesis_component}).value();
 }
 
 SenderOptions options_of(const OurSetting& setting) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Profile thesis: a list of vertices and their displacement errors, quantised over the packet's range (thesis 3.3.1, figure 3.17).
-/// spec/50-deformable.md section 8. Shared by encoder and decoder, internal to the library.
+/// Meshes of profile thesis: a list of vertices and their displacement errors, quantised over the packet's range (thesis 3.3.1, figure
+/// 3.17). spec/85-thesis.md section 2. Shared by encoder and decoder, internal to the library.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>

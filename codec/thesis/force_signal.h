@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The return channel of the CS-Force architecture (thesis 2.4.2.1): force vectors from the server to a client under the perceptual
-/// deadband. For comparison with object states, and for use where a client cannot render. spec/65-signal.md section 3.
+/// deadband. For comparison with object states, and for use where a client cannot render. spec/85-thesis.md section 4.
 #pragma once
 
 #include <array>

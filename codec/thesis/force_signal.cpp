@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/signal/force_signal.h>
+#include <tactus/thesis/force_signal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,17 +7,17 @@
 #include <tactus/base/bytes.h>
 #include <tactus/base/fixed.h>
 #include <tactus/base/rule.h>
+#include <tactus/packet/substream.h>
 
 namespace tactus {
 namespace {
 
 constexpr std::int64_t kLargestForce = std::int64_t{4096} << kForceExp, kLargestSlope = std::int64_t{1} << 30;
-constexpr std::int64_t kTickLimit = 0xffffffff;
 constexpr unsigned kSlopeShift = 10;  // slopes are per 1024 ticks
 
 constexpr std::int64_t reach(std::uint32_t tick_rate) noexcept { return std::max<std::int64_t>(1, tick_rate / 20); }
 
-/// spec/65-signal.md section 3: integers.
+/// spec/85-thesis.md section 4: integers.
 std::array<std::int32_t, 3> shown_at(const ForceState& state, std::int64_t tick, std::uint32_t tick_rate) noexcept {
   const std::int64_t dt = std::clamp<std::int64_t>(tick - state.tick, 0, reach(tick_rate));
   std::array<std::int32_t, 3> out{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/thesis_syntax.h>
+#include <tactus/thesis/thesis_syntax.h>
 
 #include <tactus/base/bytes.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/signal/force_signal.h>
+#include <tactus/thesis/force_signal.h>
 
 #include <gtest/gtest.h>
 

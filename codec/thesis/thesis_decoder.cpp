@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/thesis_decoder.h>
+#include <tactus/thesis/thesis_decoder.h>
 
-#include <tactus/base/rule.h>
+#include <algorithm>
+
 #include <tactus/deformable/displacement.h>
 
 namespace tactus {
@@ -73,6 +74,11 @@ Result<void> ThesisDecoder::read_body(const ThesisState& base, std::int64_t, Dec
   out.final_range = coder.range();
   out.final_code = coder.code();
   return {};
+}
+
+std::unique_ptr<DeformableDecoder> thesis_mesh_decoder(const Scene& scene, std::size_t object, const DecodeLimits& limits) {
+  return std::make_unique<DeformableDecoderOf<ThesisDecoder>>(scene, object, limits,
+                                                              initial_thesis_state(scene.deformables[object]));
 }
 
 }  // namespace tactus

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/thesis_encoder.h>
+#include <tactus/thesis/thesis_encoder.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include <tactus/base/bytes.h>
-#include <tactus/deformable/displacement.h>
 
 namespace tactus {
 
@@ -124,6 +123,17 @@ Result<Payload> ThesisEncoder::encode(const EncodeRequest<ThesisState>& request,
   }
   if (object_.models_kept) next_.models = models_;
   return Payload{.size = at + coder.finish(), .updates = head.count};
+}
+
+std::unique_ptr<DeformableEncoder> thesis_mesh_encoder(const Scene& scene, std::size_t object, const DeformableOptions& options,
+                                                       const SenderPolicy& policy) {
+  const DeformableObject& o = scene.deformables[object];
+  return std::make_unique<DeformableEncoderOf<ThesisEncoder>>(scene, object, options, policy, largest_thesis_packet(o), o.layered,
+                                                              initial_thesis_state(o));
+}
+
+std::size_t largest_thesis_packet(const DeformableObject& object) noexcept {
+  return max_thesis_packet(object.rest.size(), object.quant_bits);
 }
 
 }  // namespace tactus

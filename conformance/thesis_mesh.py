@@ -1,22 +1,42 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 50 of the specification: packets of profile thesis."""
+"""Chapter 85 of the specification, section 2: meshes of profile thesis."""
 from __future__ import annotations
 
 import struct
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from conventions import Cursor, require, round_div
-from deformable_header import DeformableObject, zigzag
-from deformable_motion import lim
+from conventions import STR_5, Cursor, clamp, require, round_div, zigzag
 from packet import Receiver
 from range_coder import RangeDecoder
+
+if TYPE_CHECKING:
+    from deformable_header import DeformableObject
 
 DEF_11 = ("truncated", "R-DEF-11")
 DEF_11_VALUE = ("malformed", "R-DEF-11")
 INITIAL = (16384, 1)
 LIST_BITS = 8
+FARTHEST = 1 << 27
 
 
+# ---- Section 2.1: declaration ---------------------------------------------------------------------------------------
+def read_parameters(body: Cursor) -> tuple[int, int]:
+    """quant_bits and models_kept."""
+    quant_bits, models_kept = body.take(2, STR_5)
+    require(models_kept <= 1, "malformed", "R-DEF-3")
+    return quant_bits, models_kept
+
+
+def check_parameters(item: DeformableObject) -> None:
+    require(1 <= item.quant_bits <= 12, "invalid", "R-DEF-3")
+
+
+def models_bytes(item: DeformableObject, states: int) -> int:
+    """What the models take, as the chapter counts it."""
+    return (states + 2 if item.models_kept else 2) * 4 * (254 + (1 << item.quant_bits))
+
+
+# ---- Sections 2.2 and 2.3: state, packet ----------------------------------------------------------------------------
 class ThesisModels(NamedTuple):
     """Two trees: of gaps and of errors."""
     list: list
@@ -73,7 +93,7 @@ class ThesisCodec:
         for v in listed:
             for i in range(3 * v, 3 * v + 3):
                 symbol = decoder.tree(models.errors, q)
-                u[i] = lim(u[i] + head.lowest + round_div(symbol * head.range, (1 << q) - 1))
+                u[i] = clamp(u[i] + head.lowest + round_div(symbol * head.range, (1 << q) - 1), -FARTHEST, FARTHEST)
         decoder.check_end()
         return base._replace(tick=tick, u=u, models=models), head.key, listed, decoder
 

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Profile thesis: decodes payloads into states, a function of payload and baseline. spec/50-deformable.md section 8. Internal to
-/// the library; Receiver is the way in.
+/// Meshes of profile thesis: decodes payloads into states, a function of payload and baseline. Internal to the library; Receiver is the
+/// way in.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/rule.h>
-#include <tactus/deformable/thesis_syntax.h>
+#include <tactus/deformable/deformable_decoder.h>
 #include <tactus/packet/packet.h>
 #include <tactus/scene/scene.h>
+#include <tactus/thesis/thesis_syntax.h>
 
 namespace tactus {
 
@@ -51,5 +53,8 @@ class ThesisDecoder {
   std::vector<ListedVertex> listed_;
   ThesisState next_;  // pending: no state changes before the whole packet has proved valid
 };
+
+/// DeformableDecoder::create of an object of profile thesis
+std::unique_ptr<DeformableDecoder> thesis_mesh_decoder(const Scene& scene, std::size_t object, const DecodeLimits& limits);
 
 }  // namespace tactus

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Profile thesis: codes true displacements of one object into payloads, a function of truth and baseline (thesis 3.3.1). It
-/// codes the errors that reach the thresholds; its quantiser may leave errors above h. Internal to the library; Sender is the way
-/// in.
+/// Meshes of profile thesis: codes true displacements of one object into payloads, a function of truth and baseline. It codes the errors
+/// that reach the thresholds; its quantiser may leave errors above h. Internal to the library; Sender is the way in.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include <tactus/deformable/deformable_encoder.h>
 #include <tactus/deformable/displacement.h>
-#include <tactus/deformable/thesis_syntax.h>
 #include <tactus/mesh/graph.h>
 #include <tactus/packet/substream_encoder.h>
+#include <tactus/thesis/thesis_syntax.h>
 
 namespace tactus {
 
@@ -54,5 +56,11 @@ class ThesisEncoder {
   std::vector<std::uint32_t> listed_;  // vertices of the packet at hand
   std::vector<std::uint8_t> inside_;   // in the area of interest
 };
+
+/// DeformableEncoder::create of an object of profile thesis
+std::unique_ptr<DeformableEncoder> thesis_mesh_encoder(const Scene& scene, std::size_t object, const DeformableOptions& options,
+                                                       const SenderPolicy& policy);
+/// Without its substream's number [bytes]
+std::size_t largest_thesis_packet(const DeformableObject& object) noexcept;
 
 }  // namespace tactus
