@@ -11,6 +11,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_decoder.h>
 #include <tactus/rigid/curve.h>
+#include <tactus/rigid/rigid_states.h>
 
 namespace tactus {
 

@@ -110,6 +110,7 @@ struct ReplicaOptions {
 };
 
 class DeformableDecoder;
+struct RigidStates;
 
 class Replica {
  public:

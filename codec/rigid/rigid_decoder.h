@@ -9,6 +9,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/packet/packet.h>
+#include <tactus/rigid/rigid_states.h>
 #include <tactus/rigid/rigid_syntax.h>
 
 namespace tactus {

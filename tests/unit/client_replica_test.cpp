@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <tactus/client/replica.h>
+#include <tactus/rigid/rigid_states.h>
 #include "tests/unit/rigid_fixture.h"
 #include "tests/unit/smooth_motion.h"
 

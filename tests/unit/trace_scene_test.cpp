@@ -10,6 +10,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/metrics/deformable_errors.h>
 #include <tactus/metrics/rates.h>
+#include <tactus/rigid/rigid_states.h>
 #include "tests/property/allocated.h"
 #include "tests/unit/deformable_fixture.h"
 
