@@ -2,6 +2,7 @@
 /// An engine with 60 ticks per second, a left-handed world with y up, and objects that come and go. The scene declares slots, all parked at one
 /// position; what a slot shows is the engine's own affair. A body that leaves the world or breaks (NaN) is held where it was last, and the others go
 /// on.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A cube and a table, from server to client. Prints what is sent, why, and the error at the client.
+#include <algorithm>
 #include <cstdio>
 
 #include <tactus/tactus.h>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/deformable/thesis_decoder.h>
 
+#include <algorithm>
+
 #include <tactus/base/rule.h>
 #include <tactus/deformable/displacement.h>
 

@@ -3,6 +3,7 @@
 /// spec/50-deformable.md section 8. Shared by encoder and decoder, internal to the library.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>

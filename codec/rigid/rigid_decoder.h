@@ -3,6 +3,7 @@
 /// Internal to the library; Receiver is the way in.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
