@@ -6,6 +6,9 @@
 
 namespace tactus {
 
+Player::Player(std::span<const std::uint8_t> file, StreamFileReader reader, Receiver receiver) noexcept
+    : file_(file), reader_(std::move(reader)), receiver_(std::move(receiver)) {}
+
 Result<Player> Player::open(std::span<const std::uint8_t> file, const ReceiverOptions& options) {
   TACTUS_TRY(StreamFileReader reader, StreamFileReader::open(file, options.limits));
   TACTUS_TRY(Receiver receiver, Receiver::create(reader.scene(), options));

@@ -45,8 +45,7 @@ class Player {
   bool complete() const noexcept { return reader_.complete(); }  ///< valid after the last packet
 
  private:
-  Player(std::span<const std::uint8_t> file, StreamFileReader reader, Receiver receiver) noexcept
-      : file_(file), reader_(std::move(reader)), receiver_(std::move(receiver)) {}
+  Player(std::span<const std::uint8_t> file, StreamFileReader reader, Receiver receiver) noexcept;
 
   std::span<const std::uint8_t> file_;
   StreamFileReader reader_;

@@ -12,6 +12,7 @@
 #include <tactus/packet/substream.h>
 #include <tactus/packet/substream_decoder.h>
 #include <tactus/rigid/rigid_decoder.h>
+#include <tactus/rigid/rigid_states.h>
 #include <tactus/scene/mesh_support.h>
 
 namespace tactus {

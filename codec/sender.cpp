@@ -11,6 +11,7 @@
 #include <tactus/elastic/driven_shape.h>
 #include <tactus/load/load_encoder.h>
 #include <tactus/rigid/rigid_encoder.h>
+#include <tactus/rigid/rigid_states.h>
 
 namespace tactus {
 

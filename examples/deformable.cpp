@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A sheet is pressed in the middle. One shape every 17 ms; the error is at most 0.3 mm everywhere, and below the haptic threshold near
 /// the probe.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <vector>

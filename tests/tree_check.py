@@ -19,6 +19,8 @@ ROOT = {".ci", ".clang-format", ".clang-tidy", ".github", ".gitignore", "CHANGEL
         "examples", "go", "io", "lab", "metrics", "reports", "session", "sim", "spec", "tests", "tools"}
 LAYERS = ("codec", "session", "io", "metrics", "sim", "device", "cli")  # each includes nothing of those behind it; what stands beside them is included by nobody
 MAX_LINES = 600
+SLOW_HEADERS = {"algorithm", "chrono", "cmath", "functional", "iostream", "istream", "map", "ostream", "random", "ranges", "regex", "set", "sstream",
+                "unordered_map", "unordered_set", "variant"}  # in no header that tactus.h or session.h includes
 ONE_FILE = {".lua"}  # what users copy to install it: may be longer
 SHARED = {"base", "mesh"}  # folders of codec/ that are not subjects of the specification
 # Everything else in codec/ and session/ is integers: what both ends compute is the same on every machine. These files are interfaces: SI units come in
@@ -244,6 +246,17 @@ def check_integers(root):
             yield f"{path.relative_to(root)}: floating point, and the file is not in FLOATS"
 
 
+def check_umbrella_headers(root):
+    """What a program includes to use the library stays quick to compile: none of its headers includes what is slow and not needed there."""
+    for umbrella in ("codec/tactus.h", "session/session.h"):
+        if not (root / umbrella).is_file():
+            continue
+        for name in sorted(reachable(root, root / umbrella) | {umbrella}):
+            for header in re.findall(r"^\s*#\s*include\s+<(\w+)>", (root / name).read_text(encoding="utf-8"), re.M):
+                if header in SLOW_HEADERS:
+                    yield f"{name}: <{header}> is slow to compile, and {umbrella} includes this file"
+
+
 def check_system(root):
     """Headers of the operating system are included where SYSTEM says, and each file there still needs it."""
     for path in sorted(p for folder in OURS for p in (root / folder).rglob("*") if p.suffix in CODE):
@@ -305,7 +318,7 @@ def check_tree(root):
             yield f"CONTRIBUTING.md: the tree names {path.relative_to(root)}, which is not there"
 
 
-CHECKS = (check_root, check_sources, check_layers, check_cycles, check_integers, check_system, check_sides, check_units, check_stems, check_tree)
+CHECKS = (check_root, check_sources, check_layers, check_cycles, check_integers, check_umbrella_headers, check_system, check_sides, check_units, check_stems, check_tree)
 
 
 def findings(root):
@@ -336,6 +349,7 @@ def self_test():
     bad = {  # what is changed (None: left out) and a word of the finding that must follow
         "codec/rigid/rigid.h": [("int x;\n", "licence"), (spdx + "\n" * MAX_LINES, "601 lines"),
                                 (spdx + '#include <tactus/rigid/rigid_decoder.h>\n', "the encoder includes codec/rigid/rigid_decoder.h")],
+        "codec/tactus.h": [(spdx + "#include <cmath>\n", "<cmath> is slow")],
         "codec/rigid/rigid_decoder.cpp": [(spdx + "#include <unistd.h>\n", "not in SYSTEM"), (spdx + "double x;\n", "floating point"),
                                             (spdx + "#include <cmath>\n", "floating point")],
         "cli/progress.cpp": [(spdx, "includes nothing of the operating system's")],

@@ -3,10 +3,7 @@
 #pragma once
 
 #include <bit>
-#include <cmath>
 #include <cstdint>
-
-#include <tactus/base/elementary.h>
 
 namespace tactus {
 
@@ -27,7 +24,7 @@ constexpr double dot(const Vec3& a, const Vec3& b) noexcept { return a.x * b.x +
 constexpr Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double norm(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
+double norm(const Vec3& a) noexcept;
 /// From the bits: std::isfinite() is always true where a program is compiled with -ffast-math.
 constexpr bool is_finite(double v) noexcept { return (~std::bit_cast<std::uint64_t>(v) & 0x7FF0'0000'0000'0000) != 0; }
 constexpr bool is_finite(const Vec3& a) noexcept { return is_finite(a.x) && is_finite(a.y) && is_finite(a.z); }
@@ -50,10 +47,7 @@ constexpr Vec3 rotate(const Quat& q, const Vec3& v) noexcept {
 }
 constexpr bool is_finite(const Quat& q) noexcept { return is_finite(q.w) && is_finite(q.x) && is_finite(q.y) && is_finite(q.z); }
 /// Angle in [0, pi] rad of the rotation that takes a to b.
-inline double angle_between(const Quat& a, const Quat& b) noexcept {
-  const Quat d = b * conjugate(a);
-  return 2.0 * angle_of(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::abs(d.w));
-}
+double angle_between(const Quat& a, const Quat& b) noexcept;
 
 struct Pose {
   Vec3 position;  ///< [m] origin of the object in the world frame

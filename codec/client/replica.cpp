@@ -11,6 +11,7 @@
 #include <tactus/client/update_interpolation.h>
 #include <tactus/deformable/deformable_decoder.h>
 #include <tactus/rigid/curve.h>
+#include <tactus/rigid/rigid_states.h>
 #include <tactus/scene/thesis_component.h>
 
 namespace tactus {

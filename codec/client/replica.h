@@ -113,6 +113,7 @@ struct ReplicaOptions {
 
 class DeformableDecoder;
 class UpdateInterpolation;
+struct RigidStates;
 
 class Replica {
  public:

@@ -11,6 +11,9 @@
 
 namespace tactus {
 
+StiffnessReduction::StiffnessReduction(const Options& options)
+    : filter_(options.filter), path_(options.most_delay + std::size_t{1}) {}
+
 Result<StiffnessReduction> StiffnessReduction::create(const Options& options) try {
   const bool has_delay = options.most_delay >= 1 && options.most_delay <= kMostDelay;
   if (!has_delay || !(options.filter > 0 && options.filter <= 1)) return fail(Errc::invalid_argument, "R-API-4");

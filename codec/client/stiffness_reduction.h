@@ -78,7 +78,7 @@ class StiffnessReduction {
   void release() noexcept { is_touching_ = false; }
 
  private:
-  explicit StiffnessReduction(const Options& options) : filter_(options.filter), path_(options.most_delay + std::size_t{1}) {}
+  explicit StiffnessReduction(const Options& options);
   Vec3 displacement(std::uint32_t round_trip) const noexcept;
   double filtered(double wanted) noexcept;
 

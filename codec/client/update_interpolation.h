@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include <tactus/packet/packet.h>
-#include <tactus/rigid/rigid_state.h>
+#include <tactus/rigid/rigid_states.h>
 
 namespace tactus {
 

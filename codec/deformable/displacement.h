@@ -2,7 +2,6 @@
 /// Displacements of a deformable object's vertices, and when they are worth sending.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -26,7 +25,8 @@ struct SurfaceTouch {
 
 /// h = p |f_s| / k_c [m], thesis eq. 3.12.   pre  t.weber_fraction is set
 inline double haptic_threshold(const DeformableThresholds& t, const SurfaceTouch& touch) noexcept {
-  return *t.weber_fraction * (std::max)(touch.force / touch.stiffness, t.depth_floor);
+  const double depth = touch.force / touch.stiffness;
+  return *t.weber_fraction * (depth < t.depth_floor ? t.depth_floor : depth);
 }
 
 /// A deformable object at one frame.
@@ -47,8 +47,8 @@ struct DeformableOptions {
 // Displacements of vertices from metres to the grid and back. spec/25-packet.md section 1.
 
 constexpr std::int32_t limited_displacement(std::int64_t v) noexcept {
-  return static_cast<std::int32_t>(
-      std::clamp<std::int64_t>(v, -DeformableObject::kMaxDisplacement, DeformableObject::kMaxDisplacement));
+  constexpr std::int64_t kMost = DeformableObject::kMaxDisplacement;
+  return static_cast<std::int32_t>(v < -kMost ? -kMost : v > kMost ? kMost : v);
 }
 
 constexpr std::int64_t squared_distance(const std::array<std::int32_t, 3>& a, const std::array<std::int32_t, 3>& b) noexcept {

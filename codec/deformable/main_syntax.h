@@ -2,6 +2,7 @@
 /// Syntax of a packet of profile main: shared by encoder and decoder, internal to the library. spec/50-deformable.md section 5.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>

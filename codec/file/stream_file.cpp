@@ -38,6 +38,8 @@ std::uint64_t* PacketNumbers::of(std::span<const std::uint8_t> packet) noexcept 
 
 void PacketNumbers::reset() noexcept { newest_.assign(newest_.size(), 0); }
 
+StreamFileWriter::StreamFileWriter(std::ostream& out, const Scene& scene) : out_(&out), numbers_(scene) {}
+
 Result<StreamFileWriter> StreamFileWriter::create(std::ostream& out, const Scene& scene) try {
   TACTUS_TRY(const auto bytes, write_scene(scene));
   StreamFileWriter writer(out, scene);

@@ -46,7 +46,7 @@ class StreamFileWriter {
     std::int64_t tick;
     std::uint64_t offset;
   };
-  StreamFileWriter(std::ostream& out, const Scene& scene) : out_(&out), numbers_(scene) {}
+  StreamFileWriter(std::ostream& out, const Scene& scene);
   Result<void> write_record(std::uint8_t type, std::span<const std::uint8_t> payload);
 
   std::ostream* out_;

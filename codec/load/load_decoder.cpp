@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/load/load_decoder.h>
 
+#include <algorithm>
+
 namespace tactus {
 
 LoadDecoder::LoadDecoder(const Scene& scene) : scene_(scene), steps_(vectors_of_load(scene)) {

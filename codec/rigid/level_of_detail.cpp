@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/rigid/level_of_detail.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>

@@ -3,12 +3,14 @@
 /// Internal to the library; Receiver is the way in.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include <tactus/base/rule.h>
 #include <tactus/packet/packet.h>
+#include <tactus/rigid/rigid_states.h>
 #include <tactus/rigid/rigid_syntax.h>
 
 namespace tactus {

@@ -25,6 +25,7 @@
 #include <tactus/rigid/encoder_choices.h>
 #include <tactus/rigid/level_of_detail.h>
 #include <tactus/rigid/pose_thresholds.h>
+#include <tactus/rigid/rigid_states.h>
 #include <tactus/rigid/rigid_syntax.h>
 #include <tactus/rigid/rigid_truth.h>
 #include <tactus/rigid/rigid_work.h>

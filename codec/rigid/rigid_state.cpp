@@ -7,6 +7,7 @@
 #include <tactus/base/fixed.h>
 #include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
+#include <tactus/rigid/rigid_states.h>
 
 namespace tactus {
 RigidStates initial_states(const Scene& scene) {

@@ -6,7 +6,6 @@
 #include <cstdint>
 
 #include <tactus/base/geometry.h>
-#include <tactus/base/paged_array.h>
 #include <tactus/base/result.h>
 #include <tactus/scene/scene.h>
 
@@ -57,26 +56,15 @@ struct RigidState {
 
 inline constexpr std::int32_t kAngularVelocityLimit = 1 << 25;
 
-/// The states of all objects of a scene after a packet.
-struct RigidStates {
-  std::int64_t tick = 0;           ///< of the packet
-  PagedArray<RigidState> objects;  ///< order of Scene::objects
-};
-
 /// At rest where the scene declares it.
 inline RigidState initial_state(const Scene& scene, std::size_t object) noexcept {
   const RigidPose& initial = scene.objects[object].initial;
   return {.position = initial.position, .rotation = initial.rotation, .lod = scene.interest ? kOutOfInterest : std::uint8_t{0}};
 }
-/// All objects at rest where the scene declares them; room for as many states as an end keeps.   allocates
-RigidStates initial_states(const Scene& scene);
 
 /// SI sample to grid.
 /// err  invalid_argument R-API-1 a component is NaN or infinite; R-API-2 the value leaves the grid's range;
 ///      R-API-3 the quaternion's length differs from 1 by more than 1e-3.
 Result<RigidState> to_grid(const RigidSample& sample, std::int64_t tick, const GridExponents& grid) noexcept;
-
-/// FNV-1a (64 bit) over the states of all objects that can move. spec 40-rigid 6
-std::uint64_t state_hash(const Scene& scene, const RigidStates& states) noexcept;
 
 }  // namespace tactus

@@ -122,7 +122,7 @@ class Scene : public SceneSpec {
   std::optional<std::uint32_t> find(std::string_view name) const noexcept;
 
   /// Rigid objects that can move, ascending: the only ones that packets name.
-  std::span<const std::uint32_t> moving() const noexcept { return moving_; }
+  std::span<const std::uint32_t> moving() const noexcept { return {moving_.data(), moving_.size()}; }
 
   /// Order and parents of the vertices of a deformable object of profile main, for all who code it.   pre  it is one of this scene
   const std::shared_ptr<const VertexHierarchy>& hierarchy(const DeformableObject& object) const noexcept {

@@ -199,6 +199,13 @@ std::string too_many(const Counts& of, const DecodeLimits& limits) {
 
 }  // namespace
 
+SceneBuilder::SceneBuilder(std::uint32_t tick_rate) { spec_.tick_rate = tick_rate; }
+SceneBuilder::SceneBuilder(const SceneBuilder&) = default;
+SceneBuilder::SceneBuilder(SceneBuilder&&) noexcept = default;
+SceneBuilder& SceneBuilder::operator=(const SceneBuilder&) = default;
+SceneBuilder& SceneBuilder::operator=(SceneBuilder&&) noexcept = default;
+SceneBuilder::~SceneBuilder() = default;
+
 SceneBuilder& SceneBuilder::rigid(std::string name, const Pose& initial, const RigidOptions& options) {
   rigid_.push_back({std::move(name), initial, options});
   return *this;

@@ -85,7 +85,12 @@ struct SceneFinding {
 ///   auto scene = SceneBuilder().rigid("cube", {{0, 0, 0.05}, {}}).baselines(8).build();
 class SceneBuilder {
  public:
-  explicit SceneBuilder(std::uint32_t tick_rate = 1000) { spec_.tick_rate = tick_rate; }
+  explicit SceneBuilder(std::uint32_t tick_rate = 1000);
+  SceneBuilder(const SceneBuilder&);
+  SceneBuilder(SceneBuilder&&) noexcept;
+  SceneBuilder& operator=(const SceneBuilder&);
+  SceneBuilder& operator=(SceneBuilder&&) noexcept;
+  ~SceneBuilder();
 
   /// in   initial  pose at rest until the first update
   SceneBuilder& rigid(std::string name, const Pose& initial = {}, const RigidOptions& options = {});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/seal/seal_client.h>
 
+#include <algorithm>
 #include <array>
 
 #include <tactus/base/rule.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/trace/cdr.h>
 
+#include <algorithm>
 #include <array>
 
 namespace tactus {

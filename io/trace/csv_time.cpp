@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/trace/csv_time.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>

@@ -2,6 +2,7 @@
 #include <tactus/trace/ros_samples.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <tactus/base/rule.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/study/sampled_mass.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/sim/scene/deformable_reader.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include <tactus/sim/tets/tet_files.h>
 
 namespace tactus::sim {

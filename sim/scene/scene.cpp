@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/sim/scene/scene.h>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <set>

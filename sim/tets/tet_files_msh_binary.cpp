@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gmsh's binary forms, of either byte order: its reference manual, "MSH file format" (4.1: ints of 4 bytes, sizes of 8) and "MSH file format
 // version 2 (Legacy)" (ints of 4 bytes). fTetWild writes 2.2, meshio 4.1 or 2.2.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <string>

@@ -3,6 +3,7 @@
 /// of the same membrane, which is solved to the end.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <vector>
 
 #include <tactus/deformable/main_state.h>

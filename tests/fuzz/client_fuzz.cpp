@@ -6,6 +6,7 @@
 
 #include <tactus/client/replica.h>
 #include <tactus/rigid/device_path.h>
+#include <tactus/rigid/rigid_states.h>
 #include <tactus/scene/scene_builder.h>
 #include <tactus/thesis/thesis.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Any bytes as packets of a small deformable object.
+#include <cmath>
 #include <cstdlib>
 
 #include "tests/fuzz/packets.h"

@@ -2,6 +2,7 @@
 /// Both ends of the seal among hostile datagrams: the input is a row of (operation, size, its bytes). Who has not validated an address gets
 /// no more than three times what it sent, a stranger's datagram never comes out as one of the session, and no noise ends an association.
 /// The input is a key file and a key list, too. (GnuTLS draws its random numbers: the same input takes the same path, but for their values.)
+#include <algorithm>
 #include <string_view>
 
 #include "tests/fuzz/seal_world.h"

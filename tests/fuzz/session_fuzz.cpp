@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A session in any state, and datagrams whose check holds, whatever is in them: the input is a row of (operation, size, its bytes).
 /// Nothing long is answered, to an address that is not validated no more than it sent, and what an end sends can be read.
+#include <algorithm>
 #include <cstring>
 
 #include <tactus/session/device_signal.h>

@@ -2,6 +2,7 @@
 /// What all stands on: bytes, fixed point, results, text.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>

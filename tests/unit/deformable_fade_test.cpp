@@ -2,6 +2,8 @@
 /// Corrections that fade, fractions of the bounds and sets of weights: bounds hold, both ends agree, and what rests costs nothing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <tactus/tactus.h>
 #include "tests/unit/deformable_fixture.h"
 

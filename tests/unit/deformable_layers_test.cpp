@@ -2,6 +2,8 @@
 /// Haptic and visual layers: each packet keeps the bounds it vouches for, and dropping visual ones does not stop the haptic ones.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <tactus/tactus.h>
 #include "tests/property/allocated.h"
 #include "tests/unit/deformable_fixture.h"

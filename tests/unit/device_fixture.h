@@ -2,6 +2,7 @@
 /// A clock that a test moves, and a device that does what a test asks.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <vector>

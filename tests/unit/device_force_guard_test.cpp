@@ -2,6 +2,7 @@
 /// Forces that reach no device, or later, or less of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -2,6 +2,7 @@
 /// A cube that a device drives, and the path of the device.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 

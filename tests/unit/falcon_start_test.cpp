@@ -2,6 +2,7 @@
 /// Firmware for a Falcon that was switched on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 

@@ -2,6 +2,7 @@
 // Starts, impulses and inputs that no sane scene has: integrators recover or stop with an error; what is not a number never gets out.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>

@@ -2,6 +2,7 @@
 /// Objects are sent to a client by their distance: levels, their bounds, and what is left out.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

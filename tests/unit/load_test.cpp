@@ -2,6 +2,7 @@
 /// Loads from the sender to the receiver: bounds, baselines, what is left out.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include <tactus/sim/contact/mesh_proxy.h>
 #include "tests/property/allocated.h"
 #include "tests/unit/mesh_proxy_fixture.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <dlfcn.h>
+#include <algorithm>
 #include <chrono>
 #include <clocale>
 #include <cmath>

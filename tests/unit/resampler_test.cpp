@@ -2,6 +2,7 @@
 // A trace at another rate: io/trace/resampler.h.
 #include <tactus/trace/resampler.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "tests/unit/trace_fixture.h"

@@ -13,6 +13,7 @@
 #include <tactus/base/fixed.h>
 #include <tactus/client/replica.h>
 #include <tactus/rigid/curve.h>
+#include <tactus/rigid/rigid_states.h>
 #include <tactus/tactus.h>
 #include "tests/unit/rigid_fixture.h"
 

@@ -2,6 +2,8 @@
 /// The substream of the rigid objects, from samples to what a receiver holds and shows.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 

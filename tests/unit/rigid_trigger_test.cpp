@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/rigid/trigger.h>
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/unit/rigid_fixture.h"

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <ode/ode.h>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>

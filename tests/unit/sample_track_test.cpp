@@ -2,6 +2,7 @@
 // Samples around a time, and how fast they move: io/trace/sample_track.h.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>

@@ -2,6 +2,7 @@
 /// Devices as signals: what is sent.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>

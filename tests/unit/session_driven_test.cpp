@@ -2,6 +2,7 @@
 // Driven objects in sessions: what both ends know of the device, and what the client shows.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>

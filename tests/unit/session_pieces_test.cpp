@@ -2,6 +2,8 @@
 /// A scene declaration in pieces: which go, how fast, and what a client takes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <memory>

@@ -2,6 +2,7 @@
 /// Who comes back, and where: another address, a program that crashed, a server that began anew, seats. spec/70-session.md section 3
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>

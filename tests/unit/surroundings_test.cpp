@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/sim/contact/surroundings.h>
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/property/allocated.h"

@@ -3,6 +3,7 @@
 /// the list below with the reason why it may be ignored.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 

@@ -2,6 +2,7 @@
 /// Every byte of a recording damaged in turn: a reader that skips damage ends, and what it hands out was there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Recordings of other programs that are odd: clocks, copies, strays, pauses, names; and how they can be read.
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "tests/unit/ros_bag.h"

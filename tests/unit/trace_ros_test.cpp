@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Recordings of other programs: odometry, frames that hang on each other, forces.
+#include <cmath>
 #include <numbers>
 
 #include "tests/unit/ros_bag.h"

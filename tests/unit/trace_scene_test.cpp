@@ -4,12 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <sstream>
 
 #include <tactus/base/rule.h>
 #include <tactus/metrics/deformable_errors.h>
 #include <tactus/metrics/rates.h>
+#include <tactus/rigid/rigid_states.h>
 #include "tests/property/allocated.h"
 #include "tests/unit/deformable_fixture.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Points of `tactus reproduce` for chapter 3 of the thesis: pushes over a perfect network.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>

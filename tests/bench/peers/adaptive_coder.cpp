@@ -4,6 +4,7 @@
 /// packet, so a packet decodes only after all before it.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 
 #include <tactus/base/range_coder.h>

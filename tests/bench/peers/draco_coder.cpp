@@ -2,6 +2,9 @@
 /// Draco at its slowest setting. Sequential: a cloud of points in our order. Edgebreaker: carries the triangles in every packet, because
 /// it has no way to leave them out.
 #include <draco/compression/decode.h>
+
+#include <algorithm>
+
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 
