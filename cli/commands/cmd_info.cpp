@@ -30,7 +30,7 @@
 namespace tactus::cli {
 namespace {
 
-const ReceiverOptions kOptions{.limits = {.thesis = thesis_if_built()}};
+ReceiverOptions receiver_options() { return {.limits = {.thesis = thesis_if_built()}}; }
 
 struct InfoOptions {
   std::string input;
@@ -78,7 +78,7 @@ class PacketTable {
     columns_.look(heading, true);
     fmt::print("\n");
     print_heading(stdout, columns_.aligned(heading));
-    if (auto player = Player::open(bytes, kOptions))
+    if (auto player = Player::open(bytes, receiver_options()))
       for_each_packet(*player, [&](const PlayedPacket& played) { print_row(packet_info_value(played, player->scene()).json); });
   }
 
@@ -109,7 +109,7 @@ void print_with_packets(Bytes bytes, const Json& info) {
     for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 5) text.insert(at + 1, "    ");
     return text;
   };
-  auto player = Player::open(bytes, kOptions);
+  auto player = Player::open(bytes, receiver_options());
   std::string head = text_of_json(info);
   head.erase(head.rfind("\n}"));
   fmt::print("{},\n  \"packet_list\": [", head);
@@ -125,7 +125,7 @@ void print_with_packets(Bytes bytes, const Json& info) {
 Outcome info_stream(const InfoOptions& options) {
   TACTUS_TRY(const auto file, read_file(options.readable));
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(file.data()), file.size());
-  auto player = Player::open(bytes, kOptions);
+  auto player = Player::open(bytes, receiver_options());
   if (!player) return refuse(options.input, player.error());
   StreamTotals totals(player->scene());
   PacketTable table;

@@ -374,8 +374,7 @@ ForceFade risen() {
 
 TEST(ForceFade, FallsFrom70To100MillisecondsWithoutNews) {
   ForceFade fade = risen();
-  for (std::uint64_t age = 0; age <= 70; ++age)
-    EXPECT_EQ(fade.fraction(kStart + age * kMillis, kStart), ForceFade::kAll) << age;
+  for (std::uint64_t age = 0; age <= 70; ++age) EXPECT_EQ(fade.fraction(kStart + age * kMillis, kStart), ForceFade::kAll) << age;
   EXPECT_EQ(fade.fraction(kStart + 85 * kMillis, kStart), ForceFade::kAll / 2);
   EXPECT_EQ(fade.fraction(kStart + 100 * kMillis, kStart), 0);
   for (const std::uint64_t age : {101u, 1000u, 1'000'000u}) EXPECT_EQ(fade.fraction(kStart + age * kMillis, kStart), 0);
