@@ -19,8 +19,8 @@ inline void code_residual(CountingDecoder& coder, MainModels& models, const Vert
   CountingEncoder again = coder.again();
   Vec3i turned = residual;
   for (int turn = 1; turn < 3; ++turn) {
-    std::ranges::rotate(axes, axes.begin() + 1);
-    std::ranges::rotate(turned, turned.begin() + 1);
+    std::rotate(axes.begin(), axes.begin() + 1, axes.end());
+    std::rotate(turned.begin(), turned.begin() + 1, turned.end());
     code_residual(again, models, context, axes, turned);
   }
 }
