@@ -75,9 +75,14 @@ def test_a_transport_may_give_the_numbers():
             for none in (1, 2):
                 informed.skip_number(number + none)
         assert abs(informed.poses(5)[0, 0] - 0.1) < 1e-3 and abs(uninformed.poses(5)[0, 0] - 0.15) < 1e-3
-        for number in (0, -1):
+        for number in (0, -1, (1 << 64) + 2000):
             with pytest.raises(ValueError):
                 sender.encode(30, rows, number=number)
+        for number in (-1, (1 << 64) + 2000):
+            with pytest.raises(ValueError):
+                informed.push(number, b"")
+            with pytest.raises(ValueError):
+                informed.skip_number(number)
         with pytest.raises(tactus.Error, match="R-API-5|numbers"):
             sender.encode(30, rows, number=1000)
         with pytest.raises(tactus.Error):

@@ -61,6 +61,13 @@ class Packet:
         return cls._of(packet, ctypes.string_at(packet.data, packet.bytes))
 
 
+def _number(number: int) -> int:
+    """ctypes would take 2^64 + 1 as 1; what the library refuses in 64 bits is left to it."""
+    if not 0 <= number < 1 << 64:
+        raise ValueError(f"a packet's number is above 0 and below 2^62, not {number}")
+    return number
+
+
 def _data_of(packet: Packet) -> bytes:
     if len(packet.data) != packet.size:
         raise ValueError("this packet has no bytes: give one that a Sender coded, or replace its data")
@@ -154,9 +161,9 @@ class Sender(Handle):
         if moved is not None:
             truth.moved, truth.moved_count = named.ctypes.data, len(named)
         if number is not None:
-            if number < 1:
-                raise ValueError(f"a number is above 0, not {number}")
-            truth.number = number
+            if number == 0:
+                raise ValueError("a packet's number is above 0")  # which C takes as: counted
+            truth.number = _number(number)
         encoded = answer(_abi.tactus_encoded)
         self.held = []
         call(core().tactus_sender_encode, self.handle, tick, truth, encoded)
@@ -290,12 +297,12 @@ class Receiver(Handle, _Shown):
         elif data is None:
             raise TypeError("push(packet) takes a Packet of a Sender; bytes come with their number: push(number, data)")
         info, given = answer(_abi.tactus_packet_info), bytes_of(data)
-        call(core().tactus_receiver_push, self.handle, number, given, len(given), PACKET_TICK if now is None else now, info)
+        call(core().tactus_receiver_push, self.handle, _number(number), given, len(given), PACKET_TICK if now is None else now, info)
         return Packet._of(info)
 
     def skip_number(self, number: int) -> None:
         """This number came, and no packet of rigid objects has it: with INTERPOLATION_PLAYOUT the replica need not interpolate over it."""
-        call(core().tactus_receiver_push, self.handle, number, None, 0, PACKET_TICK, None)
+        call(core().tactus_receiver_push, self.handle, _number(number), None, 0, PACKET_TICK, None)
 
 
 class Player(Handle, _Shown):
