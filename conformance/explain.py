@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Decode one packet of a stream file and explain every step as Markdown tables; or its scene declaration, or what losses do to it."""
 import argparse
-import struct
 import sys
 from pathlib import Path
 
@@ -11,8 +10,8 @@ import load
 import rigid
 import thesis_mesh
 from conventions import Cursor, StreamError, clamp, round_shift, zigzag
+from declaration_syntax import Taken, elements_of_body
 from decoder import File, SceneDecoder
-from deformable_header import CLUSTERS, COMPUTED, MAIN, NO_BASIS
 from deformable_motion import FARTHEST, combine, lim
 from packet import Receiver
 from range_coder import RangeDecoder
@@ -295,74 +294,45 @@ def play(file, lost):
 
 
 # ---- The scene declaration ------------------------------------------------------------------------------------------
-class Fields:
-    """Walks over a declaration that is known to be valid."""
+class Explained(Taken):
+    """The elements of a declaration as rows of a table. The components of a vector are one row."""
+    COMPONENTS = {"position": 3, "rotation": 4, "gravity": 3, "inertia": 3, "rest": 3, "corners": 3, "entries": 3, "inner": 3, "tetrahedra": 4}
 
-    def __init__(self, data):
-        self.cursor, self.rows = Cursor(data, 0, len(data)), []
+    def __init__(self, data, deformables):
+        super().__init__(data)
+        self.rows, self.seen, self.vector = [], 0, []
+        self.deformables, self.values = iter(deformables), {}
 
-    def add(self, name, start, value):
-        self.rows.append(f"| {name} | `{self.cursor.data[start:self.cursor.position].hex(' ')}` | {value} |")
+    def add(self, name, value):
+        if name == "profile":                               # a deformable object begins
+            item = next(self.deformables)
+            self.values = {"rest": iter(item.rest), "corners": iter(item.triangles)}
+        self.vector.append(value)
+        if len(self.vector) == self.COMPONENTS.get(name, 1):
+            text = vector(self.vector)
+            self.row(name, f"differences {text}: {vector(next(self.values[name]))}" if name in self.values else text)
         return value
 
-    def number(self, name, form):
-        start = self.cursor.position
-        values = struct.unpack("<" + form, self.cursor.take(struct.calcsize("<" + form), ("", "")))
-        return self.add(name, start, values[0] if len(values) == 1 else vector(values))
+    def row(self, name, value):
+        self.rows.append(f"| {name} | `{self.cursor.data[self.seen:self.cursor.position].hex(' ')}` | {value} |")
+        self.seen, self.vector = self.cursor.position, []
 
-    def take(self, name, size, text=False):
-        start = self.cursor.position
-        data = self.cursor.take(size, ("", ""))
-        return self.add(name, start, f'"{data.decode()}"' if text else "")
-
-    def varint(self, name):
-        start = self.cursor.position
-        return self.add(name, start, self.cursor.varint(("", ""), ("", "")))
-
-    def differences(self, name, count, value=None):
-        start = self.cursor.position
-        differences = [zigzag(self.cursor.varint(("", ""), ("", ""))) for _ in range(count)]
-        self.add(name, start, f"differences {vector(differences)}" + (f": {vector(value)}" if value else ""))
-
-    def three(self, name, value):
-        self.differences(name, 3, value)
+    def extension(self, walk):
+        self.plain_varint()
+        self.bytes(self.plain_varint())
+        self.row("extension record", "")
 
 
 def explain_declaration(file, data):
-    f, end = Fields(data), file.first_record
-    f.take("magic", 4)
-    for name, form in (("version", "B"), ("profile", "B"), ("flags", "H"), ("body_size", "I"), ("tick_rate", "I"),
-                       ("position_exp", "B"), ("velocity_exp", "B"), ("rotation_exp", "B"), ("angular_exp", "B"),
-                       ("max_extrapolation", "H"), ("baseline_span", "B")):
-        f.number(name, form)
-    for _ in range(f.varint("object_count")):
-        f.number("kind", "B")
-        f.number("dof", "B")
-        f.take("name", f.number("name_size", "B"), True)
-        f.number("position", "3i")
-        f.number("rotation", "4i")
-    if file.declaration.deformables:
-        f.varint("deformable_count")
-        for item in file.declaration.deformables:
-            explain_deformable(f, item)
-    if file.declaration.loads:
-        f.number("force_exp", "B")
-        f.number("load_users", "B")
-    if file.declaration.motion:
-        f.number("gravity", "3i")
-        f.number("slide_deceleration", "i")
-    for i in file.declaration.driven:
-        for name, form in (("coupling", "I"), ("hold", "I"), ("inertia", "3I"), ("friction", "H"), ("damping", "H")):
-            f.number(f"{name} of object {i}", form)
-    if any(item.body for item in file.declaration.deformables):
-        for item in file.declaration.deformables:
-            if f.number("method", "B"):
-                explain_elastic(f, item)
-    if file.declaration.interest:
-        f.number("full", "I")
-        f.number("reach", "I")
-    if f.cursor.position < end - 4:
-        f.take("extension records", end - 4 - f.cursor.position)
+    f = Explained(data[:file.first_record], file.declaration.deformables)
+    f.bytes(4)
+    f.row("magic", "")
+    f.number("version", "B")
+    f.row("profile", f.bytes(1)[0])
+    flags, size = f.number("flags", "H"), f.number("body_size", "I")
+    end, f.cursor.end = f.cursor.end, f.cursor.position + size
+    elements_of_body(f, flags)
+    f.cursor.end = end
     f.number("crc", "I")
     table("element | bytes | value", f.rows)
     for item in file.declaration.deformables:
@@ -370,60 +340,6 @@ def explain_declaration(file, data):
         rows = [f"| {v} | {tree.depth[v]} | {vector(tree.parents[0][v])} | {vector(tree.weights[0][v])} |" for v in tree.order]
         print("Coding order, parents and weights:\n")
         table("vertex | depth | parents | weights", rows)
-
-
-def explain_deformable(f, item):
-    f.number("profile", "B")
-    f.take("name", f.number("name_size", "B"), True)
-    f.number("rings", "B")
-    main = item.profile == MAIN
-    for name, form in (("frame_period", "I"), ("layered", "B"), ("fade", "H"), ("weight_sets", "B")) if main else (("quant_bits", "B"), ("models_kept", "B")):
-        f.number(name, form)
-    f.varint("vertex_count")
-    f.varint("triangle_count")
-    for v, rest in enumerate(item.rest):
-        f.three(f"rest[{v}]", rest)
-    for t, corners in enumerate(item.triangles):
-        f.three(f"corners of triangle {t}", corners)
-    basis = f.number("basis", "B") if main else NO_BASIS
-    if basis == NO_BASIS:
-        return
-    if basis == CLUSTERS:
-        f.varint("cluster_count")
-        f.number("blend", "B")
-        for i in range(f.varint("surprise_count")):
-            f.varint(f"gap[{i}]")
-            f.varint(f"cluster[{i}]")
-        return
-    f.varint("mode_count")
-    if basis == COMPUTED:
-        for run in range(f.varint("run_count")):
-            f.varint(f"gap[{run}]")
-            f.varint(f"more[{run}]")
-        return
-    for k in range(item.mode_count):
-        f.number(f"mode_step[{k}]", "H")
-        f.take(f"entries of mode {k}", sum(1 if -64 <= e < 64 else 2 for e in item.modes[k].entries))
-
-
-def explain_elastic(f, item):
-    for name, form in (("mass_damping", "d"), ("stiffness_damping", "d"), ("gravity", "3d"), ("coupling", "d"), ("friction", "d")):
-        f.number(name, form)
-    for i in range(f.number("material_count", "B")):
-        for name in ("young", "poisson", "density"):
-            f.number(f"{name}[{i}]", "d")
-    inner_count, tet_count = f.varint("inner_count"), f.varint("tet_count")
-    for i in range(inner_count):
-        f.differences(f"inner[{i}]", 3)
-    for i in range(tet_count):
-        f.differences(f"corners of tetrahedron {i}", 4, item.body.tetrahedra[i])
-    left = tet_count if len(item.body.materials) > 1 else 0
-    while left > 0:
-        left -= f.varint("length")
-        f.number("material", "B")
-    for run in range(f.varint("run_count")):
-        f.varint(f"gap[{run}]")
-        f.varint(f"more[{run}]")
 
 
 def content_of(name: str) -> bytes:

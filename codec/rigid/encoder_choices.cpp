@@ -347,15 +347,6 @@ std::optional<RigidState> PastStates::start(std::uint32_t object, std::int64_t n
   return out;
 }
 
-bool PredictorChoice::is_declared_for(std::uint32_t object, Predictor predictor) const noexcept {
-  if (!scene_.motion) return false;
-  const MotionConstants& motion = *scene_.motion;
-  if (predictor == Predictor::slide) return motion.slide_deceleration != 0;
-  for (std::size_t i = 0; i < 3; ++i)
-    if (motion.gravity[i] != 0 && !(scene_.objects[object].dof >> i & 1u)) return false;
-  return !is_zero(motion.gravity);
-}
-
 double PredictorChoice::error_of(Predictor predictor, std::uint32_t object, RigidState from, const RigidState& truth,
                                  const PermittedError& permitted) const noexcept {
   from.predictor = predictor;
@@ -400,8 +391,8 @@ Predictor PredictorChoice::choose(std::uint32_t object, const RigidState& truth,
   if (is_touched && !may_be_driven) return best;
   if (may_be_driven && drives_on(object, truth, permitted, current)) return Predictor::driven;
   Record most = record_of(best, object, truth, permitted);
-  for (const Predictor predictor : {Predictor::ballistic, Predictor::slide}) {
-    if (is_touched || !is_declared_for(object, predictor)) continue;
+  for (const Predictor predictor : kFreePredictors) {
+    if (is_touched || !is_free_to(scene_, object, predictor)) continue;
     const Record record = record_of(predictor, object, truth, permitted);
     if (record.served < most.served || (record.served == most.served && record.error >= most.error)) continue;
     best = predictor;

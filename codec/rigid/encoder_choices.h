@@ -294,7 +294,6 @@ class PredictorChoice {
                   const PermittedError& permitted) const noexcept;
   Record record_of(Predictor predictor, std::uint32_t object, const RigidState& truth,
                    const PermittedError& permitted) const noexcept;
-  bool is_declared_for(std::uint32_t object, Predictor predictor) const noexcept;  // ballistic or slide
   /// Whether the device has driven the object for longer than a linear motion would have served.
   bool drives_on(std::uint32_t object, const RigidState& truth, const PermittedError& permitted,
                  const RigidState& current) const noexcept;

@@ -173,18 +173,6 @@ void RigidEncoder::look() noexcept {
   for (const std::uint32_t i : awake_.objects()) levels_->look(i, truth_);
 }
 
-/// The prediction from this state is where it will be.
-bool RigidEncoder::stands_still(const RigidState& state) const noexcept {
-  const std::int64_t tick = truth_.tick();
-  if (is_smoothing(state, tick) || state.predictor == Predictor::driven) return false;
-  if (tick - state.tick >= scene_.max_extrapolation) return true;
-  if (state.predictor == Predictor::ballistic) return false;
-  if (state.velocity == Vec3i{} && state.angular_velocity == Vec3i{}) return true;
-  if (state.predictor != Predictor::slide) return false;
-  const RigidPose now = predictor_.pose(state, tick), end = predictor_.pose(state, state.tick + scene_.max_extrapolation);
-  return now.position == end.position && now.rotation == end.rotation;
-}
-
 /// Neither the object nor its prediction moves, and nothing is left to send: nothing changes before its heartbeat.
 std::optional<std::int64_t> RigidEncoder::sleeps_until(std::uint32_t object) noexcept {
   const Sent& sent = sent_[object];
@@ -194,7 +182,9 @@ std::optional<std::int64_t> RigidEncoder::sleeps_until(std::uint32_t object) noe
     levels_->leave_out(object);
     return AwakeObjects::kNever;
   }
-  if (truth_.has_moved(object) || truth_.is_touched(object) || !stands_still(sent.path.state)) return std::nullopt;
+  if (truth_.has_moved(object) || truth_.is_touched(object)) return std::nullopt;
+  const std::int64_t tick = truth_.tick();
+  if (is_smoothing(sent.path.state, tick) || !predictor_.is_at_rest(sent.path.state, tick)) return std::nullopt;
   if (acknowledges_ && !sent.acknowledged) return std::nullopt;
   const RigidDecision decision = decide(object, early_ < 1);
   if (decision.reason != Reason::request || decision.is_early) return std::nullopt;
@@ -406,7 +396,7 @@ Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& pr
     CodedUpdate coded{.reason = update.reason,
                       .level = static_cast<std::uint8_t>(level),
                       .residual = quantise_pose(prediction.pose, truth, dof, level, scene_.grid),
-                      .predictor = static_cast<std::uint8_t>(signalled.predictor),
+                      .predictor = signalled.predictor,
                       .lod = static_cast<std::uint8_t>((lod_of(object) - prediction.base.lod) & 7)};
     if (signalled.predictor == Predictor::driven) set_contact(prediction.base, signalled.contact, coded);
     quantise_motion(predictor_, prediction, signalled, dof, coded);

@@ -94,7 +94,6 @@ class RigidEncoder {
   std::uint8_t lod_of(std::uint32_t object) const noexcept { return levels_ ? levels_->of(object) : std::uint8_t{0}; }
   const Bounds& bounds_of(std::uint32_t object) const noexcept { return bounds_[lod_of(object)]; }
   void sleep() noexcept;
-  bool stands_still(const RigidState& state) const noexcept;
   std::optional<std::int64_t> sleeps_until(std::uint32_t object) noexcept;
   RigidDecision decide(std::uint32_t object, bool early) noexcept;
   RigidDecision decide_alone(const SmoothedPath& path, bool early) const noexcept;

@@ -248,6 +248,30 @@ RigidPose DrivenBody::shown(const Scene& scene, std::uint32_t object) const noex
 
 // ==== rigid predictor ====
 
+bool has_predictors(const Scene& scene) noexcept { return scene.motion || scene.driven; }
+
+bool is_declared(const Scene& scene, std::uint32_t object, Predictor predictor) noexcept {
+  switch (predictor) {
+    case Predictor::linear:
+      return true;
+    case Predictor::ballistic:
+      return scene.motion && !is_zero(scene.motion->gravity);
+    case Predictor::slide:
+      return scene.motion && scene.motion->slide_deceleration != 0;
+    case Predictor::driven:
+      return scene.driven && scene.driven->bodies[object].coupling != 0;
+  }
+  return false;
+}
+
+bool is_free_to(const Scene& scene, std::uint32_t object, Predictor predictor) noexcept {
+  if (!is_declared(scene, object, predictor)) return false;
+  if (predictor != Predictor::ballistic) return true;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (scene.motion->gravity[i] != 0 && !(scene.objects[object].dof >> i & 1u)) return false;
+  return true;
+}
+
 namespace {
 
 constexpr std::int64_t kWhole = 1 << 15;
@@ -338,6 +362,16 @@ RigidPredictor::RigidPredictor(const Scene& scene, const DevicePath* device)
 RigidPose RigidPredictor::shown(std::uint32_t object, const RigidState& state, std::int64_t tick) const noexcept {
   if (state.predictor != Predictor::driven || path_ == nullptr) return pose(state, tick);
   return bodies_[object].pose(scene_, object, *path_, state, tick);
+}
+
+bool RigidPredictor::is_at_rest(const RigidState& state, std::int64_t tick) const noexcept {
+  if (state.predictor == Predictor::driven) return false;
+  if (tick - state.tick >= scene_.max_extrapolation) return true;
+  if (state.predictor == Predictor::ballistic) return false;
+  if (state.velocity == Vec3i{} && state.angular_velocity == Vec3i{}) return true;
+  if (state.predictor != Predictor::slide) return false;
+  const RigidPose now = pose(state, tick), end = pose(state, state.tick + scene_.max_extrapolation);
+  return now.position == end.position && now.rotation == end.rotation;
 }
 
 RigidMotion RigidPredictor::free_motion(const RigidState& state, std::int64_t dt) const noexcept {

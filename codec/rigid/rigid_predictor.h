@@ -63,7 +63,16 @@ class DrivenBody {
 
 // ==== rigid predictor ====
 // Predicted poses of rigid objects between updates, by the predictor that their last update chose. spec/40-rigid.md sections 4 and 5.2.
-// Integers only.
+// Integers only. All that tells one predictor from another is here: what it needs, who may follow it, its motion, when it comes to rest.
+
+/// Updates choose among them.
+bool has_predictors(const Scene& scene) noexcept;
+/// Does the scene declare what the predictor needs? (R-RIG-7)
+bool is_declared(const Scene& scene, std::uint32_t object, Predictor predictor) noexcept;
+/// What an object that no device touches may follow instead of constant velocities.
+inline constexpr std::array kFreePredictors{Predictor::ballistic, Predictor::slide};
+/// Is it declared, and no axis along which it accelerates locked?   in  predictor  one of kFreePredictors
+bool is_free_to(const Scene& scene, std::uint32_t object, Predictor predictor) noexcept;
 
 /// Velocities of an object, on the grid.
 struct RigidMotion {
@@ -98,6 +107,9 @@ class RigidPredictor {
   /// The pose at `tick` as it is shown: pose(), but where the device drives the object, DrivenBody::pose().
   /// pre  those of pose(); `state` is one of `object`.   time that of both
   RigidPose shown(std::uint32_t object, const RigidState& state, std::int64_t tick) const noexcept;
+
+  /// From `tick` on its pose never changes.   pre  those of pose().   time that of pose()
+  bool is_at_rest(const RigidState& state, std::int64_t tick) const noexcept;
 
   /// The velocities at `tick` by the state's predictor, corrected for the pose error there. After a steady change of velocity, an
   /// error e after dt implies a change of 3 e / (2 dt). Without an error they are not corrected.   spec 40-rigid 5.2

@@ -18,13 +18,14 @@ struct RigidSample {
   Vec3 angular_velocity;  ///< [rad/s] world frame
 };
 
-/// How an object moves until its next update. Values are wire values.
+/// How an object moves until its next update. Values are wire values, of kPredictorBits. What each means: rigid_predictor.h
 enum class Predictor : std::uint8_t {
   linear = 0,     ///< constant velocities
   ballistic = 1,  ///< gravity accelerates the position
   slide = 2,      ///< both velocities fall to 0 together, the velocity by a constant deceleration
   driven = 3,     ///< the device of the client pushes or holds it; for who does not know the device, constant velocities
 };
+inline constexpr unsigned kPredictorBits = 2;
 
 /// Where the device of a client touches an object, in the object's frame. spec/42-driven.md section 3
 struct DrivenContact {

@@ -63,17 +63,6 @@ std::optional<RigidPose> add_pose(const RigidPose& predicted, const Residual& re
   return out;
 }
 
-}  // namespace
-
-bool is_declared(const Scene& scene, std::uint32_t object, std::uint8_t predictor) noexcept {
-  if (predictor == 0) return true;
-  if (predictor == 3) return scene.driven && scene.driven->bodies[object].coupling != 0;
-  if (predictor == 1) return scene.motion && !is_zero(scene.motion->gravity);
-  return predictor == 2 && scene.motion && scene.motion->slide_deceleration != 0;
-}
-
-namespace {
-
 std::array<std::int32_t, 7> numbers_of(const DrivenContact& c) noexcept {
   return {c.point[0], c.point[1], c.point[2], c.normal[0], c.normal[1], c.normal[2], c.drag};
 }
@@ -152,7 +141,7 @@ std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Pre
                  pose->rotation,
                  motion.velocity,
                  motion.angular_velocity,
-                 static_cast<Predictor>(update.predictor),
+                 update.predictor,
                  update.smoothing_exp,
                  update.retained,
                  static_cast<std::uint8_t>((prediction.base.lod + update.lod) & 7u),

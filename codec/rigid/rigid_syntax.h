@@ -39,9 +39,9 @@ struct RigidModels {
   TreeModel<4> level;
   TreeModel<3> smoothing_exp;
   TreeModel<2> retained;
-  std::array<ResidualModels, 2> residual;  // position and velocity; rotation and angular velocity
-  std::array<TreeModel<2>, 8> predictor;   // by reason; in driven scenes by 4 + reason
-  std::array<MagnitudeModel, 3> contact;   // of point, normal and drag
+  std::array<ResidualModels, 2> residual;              // position and velocity; rotation and angular velocity
+  std::array<TreeModel<kPredictorBits>, 8> predictor;  // by reason; in driven scenes by 4 + reason
+  std::array<MagnitudeModel, 3> contact;               // of point, normal and drag
   TreeModel<3> lod;
 };
 
@@ -62,14 +62,11 @@ struct CodedUpdate {
   std::uint8_t level = 0;
   std::uint8_t smoothing_exp = 0, retained = 0;  ///< as in RigidState; 0 in a scene that is not smoothed
   Residual residual;
-  std::uint8_t predictor = 0;
+  Predictor predictor = Predictor::linear;
   std::uint8_t lod = 0;                   ///< less that of the baseline, modulo 8
   bool is_held = false;                   ///< driven: as in DrivenContact
   std::array<std::int32_t, 7> contact{};  ///< driven: differences of point, normal and drag from those of the baseline
 };
-
-/// Updates choose among them.
-inline bool has_predictors(const Scene& scene) noexcept { return scene.motion || scene.driven; }
 
 template <class Coder>
 void code_head(Coder& coder, RigidModels& models, const Scene& scene, RigidHead& head) noexcept {
@@ -141,17 +138,15 @@ void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uin
   if (update.smoothing_exp > 0)
     update.retained = static_cast<std::uint8_t>(coder.template tree<2>(models.retained, update.retained));
   if (has_predictors(scene)) {
-    TreeModel<2>& model = models.predictor[static_cast<std::size_t>(update.reason) + (scene.driven ? 4 : 0)];
-    update.predictor = static_cast<std::uint8_t>(coder.template tree<2>(model, update.predictor));
+    auto& model = models.predictor[static_cast<std::size_t>(update.reason) + (scene.driven ? 4 : 0)];
+    update.predictor =
+        static_cast<Predictor>(coder.template tree<kPredictorBits>(model, static_cast<std::uint32_t>(update.predictor)));
   }
-  if (update.predictor == static_cast<std::uint8_t>(Predictor::driven) && scene.driven) code_contact(coder, models, update);
+  if (update.predictor == Predictor::driven && scene.driven) code_contact(coder, models, update);
   auto& of = update.residual.of;
   code_residual(coder, models.residual[0], dof & 7u, update.reason, of[0], of[1]);
   code_residual(coder, models.residual[1], dof >> 3, update.reason, of[2], of[3]);
 }
-
-/// Does the scene declare what this predictor needs? (R-RIG-7)
-bool is_declared(const Scene& scene, std::uint32_t object, std::uint8_t predictor) noexcept;
 
 /// Set the differences that signal `contact`.
 void set_contact(const RigidState& base, const DrivenContact& contact, CodedUpdate& update) noexcept;

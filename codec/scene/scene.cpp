@@ -70,46 +70,6 @@ RuleName broken_parameter_rule(const SceneSpec& spec) noexcept {
   return {};
 }
 
-static bool moves(const SceneSpec& spec) noexcept {
-  return std::ranges::any_of(spec.objects, [](const RigidObject& object) { return object.dof != Dof::none; });
-}
-
-RuleName broken_load_rule(const SceneSpec& spec) noexcept {
-  if (!spec.loads) return {};
-  const bool fits = spec.loads->force_exp <= LoadSpec::kMostExponent && spec.loads->users <= LoadSpec::kMostUsers;
-  return moves(spec) && fits ? RuleName{} : RuleName{"R-STR-19"};
-}
-
-RuleName broken_motion_rule(const SceneSpec& spec) noexcept {
-  if (!spec.motion) return {};
-  constexpr std::int32_t kMost = MotionConstants::kMost;
-  const MotionConstants& motion = *spec.motion;
-  const bool fits = std::ranges::all_of(motion.gravity, [](std::int32_t g) { return g >= -kMost && g <= kMost; }) &&
-                    motion.slide_deceleration >= 0 && motion.slide_deceleration <= kMost;
-  return moves(spec) && fits && motion != MotionConstants{} ? RuleName{} : RuleName{"R-STR-22"};
-}
-
-RuleName broken_driven_rule(const SceneSpec& spec) noexcept {
-  if (!spec.driven) return {};
-  using Body = DrivenConstants::Body;
-  const auto fits = [](std::uint32_t value) { return value >= 1 && value <= Body::kMost; };
-  bool any = false, sound = spec.driven->bodies.size() == spec.objects.size();
-  for (std::size_t i = 0; sound && i < spec.objects.size(); ++i) {
-    const Body& body = spec.driven->bodies[i];
-    if (body == Body{}) continue;
-    any = true;
-    sound = spec.objects[i].dof != Dof::none && fits(body.coupling) && body.hold <= Body::kMost &&
-            std::ranges::all_of(body.inertia, fits);
-  }
-  return any && sound ? RuleName{} : RuleName{"R-STR-23"};
-}
-
-RuleName broken_interest_rule(const SceneSpec& spec) noexcept {
-  if (!spec.interest) return {};
-  const auto [full, reach] = *spec.interest;
-  return moves(spec) && full >= 1 && full <= reach && reach <= Interest::kMost ? RuleName{} : RuleName{"R-STR-25"};
-}
-
 namespace {
 
 /// in  meshes  null: there are no deformable objects
@@ -132,10 +92,7 @@ Result<void> find_broken_rule(const SceneSpec& spec, const MeshSupport* meshes, 
     triangles += object.triangles.size();
     if (vertices > limits.vertices || triangles > limits.triangles) return fail(Errc::limit_exceeded, "R-STR-14");
   }
-  if (const RuleName rule = broken_load_rule(spec)) return fail(Errc::invalid, rule);
-  if (const RuleName rule = broken_motion_rule(spec)) return fail(Errc::invalid, rule);
-  if (const RuleName rule = broken_driven_rule(spec)) return fail(Errc::invalid, rule);
-  if (const RuleName rule = broken_interest_rule(spec)) return fail(Errc::invalid, rule);
+  if (const RuleName rule = broken_part_rule(spec)) return fail(Errc::invalid, rule);
   if (spec.bounds && !are_bounds(spec)) return fail(Errc::invalid, "R-STR-17");
   if (state_bytes(spec) > limits.state_bytes) return fail(Errc::limit_exceeded, "R-STR-18");
   if (basis_work(spec) > limits.basis_work) return fail(Errc::limit_exceeded, "R-STR-21");

@@ -30,10 +30,7 @@ inline Errc class_of_overflow(const ByteReader& in) noexcept { return in.overrun
 RuleName broken_object_rule(const RigidObject& object) noexcept;
 RuleName broken_parameter_rule(const SceneSpec& spec) noexcept;
 RuleName broken_deformable_rule(const DeformableObject& object) noexcept;
-RuleName broken_load_rule(const SceneSpec& spec) noexcept;
-RuleName broken_motion_rule(const SceneSpec& spec) noexcept;
-RuleName broken_driven_rule(const SceneSpec& spec) noexcept;
-RuleName broken_interest_rule(const SceneSpec& spec) noexcept;
+RuleName broken_part_rule(const SceneSpec& spec) noexcept;  ///< of loads, motion constants, driven objects, interest
 
 // ==== vertex syntax ====
 // Vertices in a scene declaration: where they rest, and which of them are fixed. spec/50-deformable.md section 1.2.

@@ -2,6 +2,7 @@
 #include <tactus/scene/scene_syntax.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <unordered_set>
 
@@ -18,9 +19,7 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kMagic{0x89, 'T', 'C', 'T'};
 constexpr std::uint8_t kRigid = 1;
 constexpr std::uint8_t kProfile = 0;
-constexpr std::uint16_t kHasDeformables = 1, kHasLoads = 2, kIsSmoothed = 4, kHasMotion = 8, kIsDriven = 16, kIsElastic = 32,
-                        kHasInterest = 64;  // flags
-constexpr std::size_t kFixedSize = 12;      // magic, version, profile, flags, body_size
+constexpr std::size_t kFixedSize = 12;  // magic, version, profile, flags, body_size
 
 Result<RigidObject> parse_object(ByteReader& body) {
   const std::uint64_t start = body.bit_offset();
@@ -69,28 +68,46 @@ Result<void> parse_deformables(ByteReader& body, const DecodeLimits& limits, Sce
   return {};
 }
 
-Result<void> parse_loads(ByteReader& body, SceneSpec& spec) {
-  const std::uint64_t start = body.bit_offset();
-  LoadSpec& loads = spec.loads.emplace();
-  loads.force_exp = body.u8();
-  loads.users = body.u8();
-  if (!body.ok()) return fail(Errc::truncated, "R-STR-5", body.bit_offset());
-  if (const RuleName rule = broken_load_rule(spec)) return fail(Errc::invalid, rule, start);
-  return {};
+// ==== parts ====
+// What a scene may have. spec/20-scene.md section 4
+
+bool moves(const SceneSpec& spec) noexcept {
+  return std::ranges::any_of(spec.objects, [](const RigidObject& object) { return object.dof != Dof::none; });
 }
 
-Result<void> parse_motion(ByteReader& body, SceneSpec& spec) {
-  const std::uint64_t start = body.bit_offset();
-  MotionConstants& motion = spec.motion.emplace();
-  for (auto& c : motion.gravity) c = body.i32();
-  motion.slide_deceleration = body.i32();
-  if (!body.ok()) return fail(Errc::truncated, "R-STR-5", body.bit_offset());
-  if (const RuleName rule = broken_motion_rule(spec)) return fail(Errc::invalid, rule, start);
-  return {};
+RuleName broken_load_rule(const SceneSpec& spec) noexcept {
+  const bool fits = spec.loads->force_exp <= LoadSpec::kMostExponent && spec.loads->users <= LoadSpec::kMostUsers;
+  return moves(spec) && fits ? RuleName{} : RuleName{"R-STR-19"};
 }
 
-Result<void> parse_driven(ByteReader& body, SceneSpec& spec) {
-  const std::uint64_t start = body.bit_offset();
+RuleName broken_motion_rule(const SceneSpec& spec) noexcept {
+  constexpr std::int32_t kMost = MotionConstants::kMost;
+  const MotionConstants& motion = *spec.motion;
+  const bool fits = std::ranges::all_of(motion.gravity, [](std::int32_t g) { return g >= -kMost && g <= kMost; }) &&
+                    motion.slide_deceleration >= 0 && motion.slide_deceleration <= kMost;
+  return moves(spec) && fits && motion != MotionConstants{} ? RuleName{} : RuleName{"R-STR-22"};
+}
+
+RuleName broken_driven_rule(const SceneSpec& spec) noexcept {
+  using Body = DrivenConstants::Body;
+  const auto fits = [](std::uint32_t value) { return value >= 1 && value <= Body::kMost; };
+  bool any = false, sound = spec.driven->bodies.size() == spec.objects.size();
+  for (std::size_t i = 0; sound && i < spec.objects.size(); ++i) {
+    const Body& body = spec.driven->bodies[i];
+    if (body == Body{}) continue;
+    any = true;
+    sound = spec.objects[i].dof != Dof::none && fits(body.coupling) && body.hold <= Body::kMost &&
+            std::ranges::all_of(body.inertia, fits);
+  }
+  return any && sound ? RuleName{} : RuleName{"R-STR-23"};
+}
+
+RuleName broken_interest_rule(const SceneSpec& spec) noexcept {
+  const auto [full, reach] = *spec.interest;
+  return moves(spec) && full >= 1 && full <= reach && reach <= Interest::kMost ? RuleName{} : RuleName{"R-STR-25"};
+}
+
+void parse_driven(ByteReader& body, SceneSpec& spec) {
   DrivenConstants& driven = spec.driven.emplace();
   driven.bodies.resize(spec.objects.size());
   for (std::size_t i = 0; i < spec.objects.size(); ++i) {
@@ -101,19 +118,6 @@ Result<void> parse_driven(ByteReader& body, SceneSpec& spec) {
     driven.bodies[i].friction = body.u16();
     driven.bodies[i].damping = body.u16();
   }
-  if (!body.ok()) return fail(Errc::truncated, "R-STR-5", body.bit_offset());
-  if (const RuleName rule = broken_driven_rule(spec)) return fail(Errc::invalid, rule, start);
-  return {};
-}
-
-Result<void> parse_interest(ByteReader& body, SceneSpec& spec) {
-  const std::uint64_t start = body.bit_offset();
-  Interest& interest = spec.interest.emplace();
-  interest.full = body.u32();
-  interest.reach = body.u32();
-  if (!body.ok()) return fail(Errc::truncated, "R-STR-5", body.bit_offset());
-  if (const RuleName rule = broken_interest_rule(spec)) return fail(Errc::invalid, rule, start);
-  return {};
 }
 
 void write_driven(ByteWriter& b, const Scene& scene) {
@@ -126,9 +130,94 @@ void write_driven(ByteWriter& b, const Scene& scene) {
   }
 }
 
+struct Part {
+  bool (*is_in)(const SceneSpec&);
+  Result<void> (*parse)(ByteReader&, const DecodeLimits&,
+                        SceneSpec&);  // what it does not check, its caller does: the end, then the rule
+  void (*write)(ByteWriter&, const Scene&);
+  RuleName (*broken_rule)(const SceneSpec&);  // of one that is in; null: checked where its elements are
+};
+
+/// By bit of `flags`.
+constexpr std::array kParts{
+    Part{[](const SceneSpec& s) { return !s.deformables.empty(); }, parse_deformables,
+         [](ByteWriter& b, const Scene& s) {
+           b.varint(s.deformables.size());
+           for (const DeformableObject& object : s.deformables) write_deformable(b, object);
+         },
+         nullptr},
+    Part{[](const SceneSpec& s) { return s.loads.has_value(); },
+         [](ByteReader& in, const DecodeLimits&, SceneSpec& s) -> Result<void> {
+           s.loads.emplace();
+           s.loads->force_exp = in.u8();
+           s.loads->users = in.u8();
+           return {};
+         },
+         [](ByteWriter& b, const Scene& s) {
+           b.u8(s.loads->force_exp);
+           b.u8(s.loads->users);
+         },
+         broken_load_rule},
+    Part{[](const SceneSpec& s) { return s.is_smoothed; },
+         [](ByteReader&, const DecodeLimits&, SceneSpec& s) -> Result<void> {
+           s.is_smoothed = true;
+           return {};
+         },
+         [](ByteWriter&, const Scene&) {}, nullptr},
+    Part{[](const SceneSpec& s) { return s.motion.has_value(); },
+         [](ByteReader& in, const DecodeLimits&, SceneSpec& s) -> Result<void> {
+           s.motion.emplace();
+           for (std::int32_t& c : s.motion->gravity) c = in.i32();
+           s.motion->slide_deceleration = in.i32();
+           return {};
+         },
+         [](ByteWriter& b, const Scene& s) {
+           for (const std::int32_t c : s.motion->gravity) b.i32(c);
+           b.i32(s.motion->slide_deceleration);
+         },
+         broken_motion_rule},
+    Part{[](const SceneSpec& s) { return s.driven.has_value(); },
+         [](ByteReader& in, const DecodeLimits&, SceneSpec& s) -> Result<void> {
+           parse_driven(in, s);
+           return {};
+         },
+         write_driven, broken_driven_rule},
+    Part{[](const SceneSpec& s) { return has_elastic_body(s.deformables); },
+         [](ByteReader& in, const DecodeLimits&, SceneSpec& s) { return parse_elastic(in, s.deformables, s.grid.position); },
+         [](ByteWriter& b, const Scene& s) { write_elastic(b, s.deformables); }, nullptr},
+    Part{[](const SceneSpec& s) { return s.interest.has_value(); },
+         [](ByteReader& in, const DecodeLimits&, SceneSpec& s) -> Result<void> {
+           s.interest.emplace();
+           s.interest->full = in.u32();
+           s.interest->reach = in.u32();
+           return {};
+         },
+         [](ByteWriter& b, const Scene& s) {
+           b.u32(s.interest->full);
+           b.u32(s.interest->reach);
+         },
+         broken_interest_rule},
+};
+
+std::uint16_t flags_of(const SceneSpec& spec) {
+  unsigned flags = 0;
+  for (std::size_t bit = 0; bit < kParts.size(); ++bit) flags |= kParts[bit].is_in(spec) ? 1u << bit : 0u;
+  return static_cast<std::uint16_t>(flags);
+}
+
+Result<void> parse_part(const Part& part, ByteReader& body, const DecodeLimits& limits, SceneSpec& spec) {
+  const std::uint64_t start = body.bit_offset();
+  TACTUS_CHECK(part.parse(body, limits, spec));
+  if (!body.ok()) return fail(Errc::truncated, "R-STR-5", body.bit_offset());
+  const RuleName rule = part.broken_rule != nullptr ? part.broken_rule(spec) : RuleName{};
+  if (rule) return fail(Errc::invalid, rule, start);
+  return {};
+}
+
+// ==== body ====
+
 Result<SceneSpec> parse_body(ByteReader body, std::uint16_t flags, const DecodeLimits& limits) {
   SceneSpec spec;
-  spec.is_smoothed = (flags & kIsSmoothed) != 0;
   const std::uint64_t start = body.bit_offset();
   spec.tick_rate = body.u32();
   spec.grid.position = body.u8();
@@ -148,17 +237,21 @@ Result<SceneSpec> parse_body(ByteReader body, std::uint16_t flags, const DecodeL
     TACTUS_TRY(auto object, parse_object(body));
     spec.objects.push_back(std::move(object));
   }
-  if (flags & kHasDeformables) TACTUS_CHECK(parse_deformables(body, limits, spec));
-  if (flags & kHasLoads) TACTUS_CHECK(parse_loads(body, spec));
-  if (flags & kHasMotion) TACTUS_CHECK(parse_motion(body, spec));
-  if (flags & kIsDriven) TACTUS_CHECK(parse_driven(body, spec));
-  if (flags & kIsElastic) TACTUS_CHECK(parse_elastic(body, spec.deformables, spec.grid.position));
-  if (flags & kHasInterest) TACTUS_CHECK(parse_interest(body, spec));
+  for (std::size_t bit = 0; bit < kParts.size(); ++bit)
+    if (flags >> bit & 1u) TACTUS_CHECK(parse_part(kParts[bit], body, limits, spec));
   TACTUS_CHECK(parse_extensions(body, spec));
   return spec;
 }
 
 }  // namespace
+
+RuleName broken_part_rule(const SceneSpec& spec) noexcept {
+  for (const Part& part : kParts) {
+    if (part.broken_rule == nullptr || !part.is_in(spec)) continue;
+    if (const RuleName rule = part.broken_rule(spec)) return rule;
+  }
+  return {};
+}
 
 Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
   std::vector<std::uint8_t> body;
@@ -179,22 +272,8 @@ Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
     for (const std::int32_t c : object.initial.position) b.i32(c);
     for (const std::int32_t c : object.initial.rotation) b.i32(c);
   }
-  if (!scene.deformables.empty()) b.varint(scene.deformables.size());
-  for (const DeformableObject& object : scene.deformables) write_deformable(b, object);
-  if (scene.loads) {
-    b.u8(scene.loads->force_exp);
-    b.u8(scene.loads->users);
-  }
-  if (scene.motion) {
-    for (const std::int32_t c : scene.motion->gravity) b.i32(c);
-    b.i32(scene.motion->slide_deceleration);
-  }
-  if (scene.driven) write_driven(b, scene);
-  if (has_elastic_body(scene.deformables)) write_elastic(b, scene.deformables);
-  if (scene.interest) {
-    b.u32(scene.interest->full);
-    b.u32(scene.interest->reach);
-  }
+  for (const Part& part : kParts)
+    if (part.is_in(scene)) part.write(b, scene);
   if (scene.bounds) {
     const auto bounds = write_bounds(*scene.bounds);
     b.varint(kBoundsRecord);
@@ -210,10 +289,7 @@ Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
   for (const std::uint8_t byte : kMagic) w.u8(byte);
   w.u8(kFormatVersion);
   w.u8(kProfile);
-  w.u16(static_cast<std::uint16_t>((scene.deformables.empty() ? 0 : kHasDeformables) | (scene.loads ? kHasLoads : 0) |
-                                   (scene.is_smoothed ? kIsSmoothed : 0) | (scene.motion ? kHasMotion : 0) |
-                                   (scene.driven ? kIsDriven : 0) | (has_elastic_body(scene.deformables) ? kIsElastic : 0) |
-                                   (scene.interest ? kHasInterest : 0)));
+  w.u16(flags_of(scene));
   w.u32(static_cast<std::uint32_t>(body.size()));
   w.bytes(body);
   w.u32(crc32(out));
@@ -235,8 +311,7 @@ Result<ParsedScene> parse_scene(std::span<const std::uint8_t> bytes, const Decod
   if (version != kFormatVersion) return fail(Errc::unsupported, "R-STR-2", 32);
   if (profile > kProfile + 1) return fail(Errc::malformed, "R-STR-3", 40);
   if (profile != kProfile) return fail(Errc::unsupported, "R-STR-3", 40);
-  constexpr std::uint16_t kAll = kHasDeformables | kHasLoads | kIsSmoothed | kHasMotion | kIsDriven | kIsElastic | kHasInterest;
-  if (flags > kAll) return fail(Errc::malformed, "R-STR-4", 48);
+  if (flags >> kParts.size() != 0) return fail(Errc::malformed, "R-STR-4", 48);
   if (body_size > limits.header_bytes) return fail(Errc::limit_exceeded, "R-STR-14", 64);
   ByteReader body = in.sub(body_size);
   const std::uint32_t crc = in.u32();

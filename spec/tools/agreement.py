@@ -89,19 +89,11 @@ def action_findings(book):
 
 # ---- Numbers of the registry ----------------------------------------------------------------------------------------
 def flag_findings(book):
-    """Bits of the declaration's flags: 20, sections 4, 7 and 8, the extensions, 00, registry, rules.csv."""
+    """Bits of the declaration's flags: 20, sections 4 and 8, the extensions, 00."""
     of_bit = {int(cells[0]): cells for cells in rows(section(book, "20", "4")) if len(cells) == 4 and cells[0].isdigit()}
     bits = list(of_bit)
     if bits != list(range(len(bits))):
         yield f"20, section 4: flags are bits {bits}"
-    most = 2 ** len(bits) - 1
-    if f"| R-STR-4 | `flags` is at most {most}. |" not in section(book, "20", "7"):
-        yield f"20, section 7: R-STR-4 does not say that `flags` is at most {most}"
-    stated = next((cells for cells in rows(section(book, "registry", "4")) if cells[0].startswith("`flags`")), [""] * 3)
-    if [int(bit) for bit in re.findall(r"bit (\d+):", stated[1])] != bits or not stated[2].startswith(f"bits {len(bits)}..15"):
-        yield f"registry, section 4: `flags` are {stated[1]}, not assigned {stated[2]}; 20, section 4 has bits 0..{len(bits) - 1}"
-    if [int(bit) for bit in re.findall(r"(\d+) \(", book.rules["R-STR-4"]["text"])] != bits:
-        yield f"rules.csv: R-STR-4 does not name bits 0..{len(bits) - 1}"
     checks = {int(bit): where for bit, where in re.findall(r"^if bit (\d+) of flags is set: (.*)$", section(book, "20", "8"), re.M)}
     if sorted(checks) != [bit for bit, cells in of_bit.items() if cells[2] != "none"]:
         yield f"20, section 8: the order of checks has the elements of bits {sorted(checks)}"
