@@ -3,7 +3,7 @@
 """Check the specification and make what is made from it. Python 3 and its standard library are enough.
 
   make.py check              links, references to sections and rules (here and in the whole tree), examples, page; exit 1 when anything is wrong
-  make.py examples           write the tables of 91-worked-examples.md by the commands beside them
+  make.py examples           write the tables of 91-worked-examples.md by the commands beside them, and the SHA-256 of tables into 90
   make.py html OUT           all chapters as one HTML page
   make.py markdown OUT       all chapters as one Markdown file, e.g. for pandoc OUT -o OUT.pdf
 """
@@ -22,6 +22,7 @@ from tools.page import dead_links, html_page, markdown_page
 
 TITLE = "Tactus: specification"
 EXAMPLES = SPEC / "91-worked-examples.md"
+VECTORS = SPEC / "90-test-vectors.md"
 BLOCK = re.compile(r"(<!-- command: (.*?) -->\n)(.*?)(<!-- end of command -->)", re.S)
 
 
@@ -38,15 +39,23 @@ def with_examples(text: str) -> str:
     return BLOCK.sub(lambda m: f"{m.group(1)}\n`{m.group(2)}`\n\n{output_of(m.group(2))}\n\n{m.group(4)}", text)
 
 
+# ---- Digests --------------------------------------------------------------------------------------------------------
+def digest_of(table: str) -> str:
+    path = SPEC / table
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else "none: no such file"
+
+
+def with_digests(text: str) -> str:
+    return re.sub(r"^\| (tables/[\w-]+\.csv) \| `.*` \|$", lambda m: f"| {m.group(1)} | `{digest_of(m.group(1))}` |", text, flags=re.M)
+
+
 # ---- Check ----------------------------------------------------------------------------------------------------------
 def table_findings(book: Book):
     """Chapter 90 names the SHA-256 of every table that a chapter names."""
     text = "".join(c.text for c in book.chapters)
     for name in sorted(set(re.findall(r"tables/[\w-]+\.csv", text))):
-        path = SPEC / name
-        digest = hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else "none: no such file"
-        if f"| {name} | `{digest}` |" not in book.by_short["90"].text:
-            yield f"90: {name} has the SHA-256 {digest}"
+        if f"| {name} | `{digest_of(name)}` |" not in book.by_short["90"].text:
+            yield f"90: {name} has the SHA-256 {digest_of(name)}"
 
 
 def vector_findings(book: Book):
@@ -86,6 +95,7 @@ def main() -> int:
         return 1 if found else 0
     if arguments.what == "examples":
         EXAMPLES.write_text(with_examples(book.by_short["91"].text), encoding="utf-8")
+        VECTORS.write_text(with_digests(book.by_short["90"].text), encoding="utf-8")
     elif arguments.what == "html":
         arguments.out.write_text(html_page(book, TITLE), encoding="utf-8")
     else:

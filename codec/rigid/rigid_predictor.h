@@ -69,8 +69,6 @@ class DrivenBody {
 bool has_predictors(const Scene& scene) noexcept;
 /// Does the scene declare what the predictor needs? (R-RIG-7)
 bool is_declared(const Scene& scene, std::uint32_t object, Predictor predictor) noexcept;
-/// What an object that no device touches may follow instead of constant velocities.
-inline constexpr std::array kFreePredictors{Predictor::ballistic, Predictor::slide};
 /// Is it declared, and no axis along which it accelerates locked?   in  predictor  one of kFreePredictors
 bool is_free_to(const Scene& scene, std::uint32_t object, Predictor predictor) noexcept;
 
@@ -95,12 +93,8 @@ class RigidPredictor {
   /// in   device  its path, which outlives the predictor; null: it is not known.   allocates if the scene has driven objects
   RigidPredictor(const Scene& scene, const DevicePath* device);
 
-  /// The pose at `tick`.
-  ///   linear     x(t) = x + v dt;  q(t) = exp(w dt / 2) q;  dt = min(t - state.tick, max_extrapolation)     spec 40-rigid 4
-  ///   ballistic  x(t) = x + v dt + g dt^2 / 2;  q as linear
-  ///   slide      as linear with dt - dt^2 / (2 T) for dt, T / 2 from T on;  T = |v| / deceleration
+  /// The pose at `tick`, by the state's predictor; `driven` as linear: packets are coded on what every receiver knows.
   /// pre  tick >= state.tick, and the scene declares the state's predictor.   time O(1), about 50 ns, slide 80 ns; no allocation.
-  ///   driven     as linear: packets are coded on what every receiver knows
   RigidPose pose(const RigidState& state, std::int64_t tick) const noexcept;
 
   bool has_device_path() const noexcept { return path_ != nullptr; }

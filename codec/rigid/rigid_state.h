@@ -18,14 +18,18 @@ struct RigidSample {
   Vec3 angular_velocity;  ///< [rad/s] world frame
 };
 
-/// How an object moves until its next update. Values are wire values, of kPredictorBits. What each means: rigid_predictor.h
+/// How an object moves until its next update, dt after it; after the scene's max_extrapolation it stands. Values are wire values, of
+/// kPredictorBits. spec/40-rigid.md section 4; what each needs and does: rigid_predictor.cpp
 enum class Predictor : std::uint8_t {
-  linear = 0,     ///< constant velocities
-  ballistic = 1,  ///< gravity accelerates the position
-  slide = 2,      ///< both velocities fall to 0 together, the velocity by a constant deceleration
-  driven = 3,     ///< the device of the client pushes or holds it; for who does not know the device, constant velocities
+  linear = 0,     ///< constant velocities: x + v dt, exp(w dt / 2) q
+  ballistic = 1,  ///< gravity accelerates the position: x + v dt + g dt^2 / 2
+  slide =
+      2,  ///< both velocities fall to 0 together, v by a constant deceleration a: dt - dt^2 / (2 |v| / a) takes the place of dt
+  driven = 3,  ///< the device of the client pushes or holds it; for who does not know the device, constant velocities
 };
 inline constexpr unsigned kPredictorBits = 2;
+/// What an object that no device touches may follow instead of constant velocities.
+inline constexpr std::array kFreePredictors{Predictor::ballistic, Predictor::slide};
 
 /// Where the device of a client touches an object, in the object's frame. spec/42-driven.md section 3
 struct DrivenContact {
