@@ -122,6 +122,7 @@ run_nightly() {
   install_view_tools
   step 'g++: build each file on its own, without warnings' tests/check.sh build gcc
   step 'g++: all tests, also those that build or test a test' tests/check.sh run gcc
+  step 'without component thesis' tests/check.sh without-thesis
   step 'codec: MemorySanitizer over all fuzz corpora' tests/check.sh msan
   step 'same bits from both compilers, without and with optimisation' tests/check.sh exact all
   step 'libFuzzer: 30 s for each reader' tests/check.sh fuzz 30

@@ -6,6 +6,7 @@
 #     build PRESET | run PRESET           one half of that
 #     browser         the page of `tactus view`: build it beside the preset test, open it in chromium
 #     codec-only      build the codec without any other package; what links it needs nothing but the C++ run-time library
+#     without-thesis  build the program and the testee without component thesis; its vectors are refused as they should be
 #     consumer [DIR]  install a build, then build and run projects that use it (DIR: a finished build; else codec-only)
 #     conformance     build and run the conformance suite
 #     exact [all]     same hashes from g++ -O0 and clang -O3 with the machine's own instructions; all: and the other two of each
@@ -127,6 +128,13 @@ codec_only() {
       *) die "the codec alone drags in $library" ;;
     esac
   done
+}
+
+without_thesis() {
+  dir=build/without-thesis
+  cmake --preset test -B "$dir" -DTACTUS_WITH_THESIS=OFF -DTACTUS_WITH_TESTS=OFF -DTACTUS_WITH_STUDY=OFF -DTACTUS_WITH_WASM=OFF -DTACTUS_WITH_VIEW=OFF
+  cmake --build "$dir" -j "$jobs"
+  python3 conformance/run.py --without thesis --testee "$dir/conformance/testee"
 }
 
 exact() { # [all]
@@ -277,6 +285,7 @@ case ${1-} in
   build) build "${2:?which preset?}" ;;
   run) run_tests "${2:?which preset?}" ;;
   codec-only) codec_only ;;
+  without-thesis) without_thesis ;;
   consumer)
     [ -n "${2-}" ] || build codec-only
     consumer "${2:-$PWD/build/codec-only}"
@@ -291,7 +300,7 @@ case ${1-} in
   format) sources | xargs clang-format --dry-run --Werror ;;
   fuzz) fuzz "${2:?how many seconds?}" ;;
   *)
-    sed -n '3,20s/^# \{0,1\}//p' "$0" >&2
+    sed -n '3,21s/^# \{0,1\}//p' "$0" >&2
     exit 2
     ;;
 esac
