@@ -4,6 +4,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <ctime>
 #include <vector>
 
@@ -20,6 +21,7 @@ namespace tactus::cli {
 namespace {
 
 constexpr const char* kSchema = "tactus.info/3";
+constexpr std::array kElasticMethods{"backward Euler", "TR-BDF2", "velocity Verlet"};
 
 Json vector_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 
@@ -50,6 +52,7 @@ Json mesh_header_json(const DeformableObject& mesh, std::uint32_t tick_rate) {
            {"triangles", mesh.triangles.size()},
            {"rings", mesh.rings},
            {"modes", mesh.basis.steps.size()}};
+  if (mesh.body) out["elastic_method"] = kElasticMethods[static_cast<std::size_t>(mesh.body->method) - 1];
   if (mesh.cluster_basis.count > 0) out["clusters"] = mesh.cluster_basis.count;
   if (!mesh.stiffness.empty()) out["stiffness_N_per_m"] = stiffness_json(mesh);
   if (is_main) {
@@ -60,6 +63,23 @@ Json mesh_header_json(const DeformableObject& mesh, std::uint32_t tick_rate) {
     out["models_kept"] = mesh.models_kept;
   }
   return out;
+}
+
+/// What a scene may have and this one has, besides objects and loads.
+void add_parts(const Scene& scene, Json& out) {
+  if (scene.motion) {
+    const double unit = step_of(scene.grid.velocity);
+    const auto& g = scene.motion->gravity;
+    if (g != std::array<std::int32_t, 3>{}) out["gravity_m_s2"] = Json::array({unit * g[0], unit * g[1], unit * g[2]});
+    if (scene.motion->slide_deceleration != 0) out["slide_deceleration_m_s2"] = unit * scene.motion->slide_deceleration;
+  }
+  if (scene.driven)
+    out["driven_objects"] =
+        std::ranges::count_if(scene.driven->bodies, [](const DrivenConstants::Body& body) { return body.coupling != 0; });
+  if (scene.interest) {
+    const double unit = step_of(scene.grid.position);
+    out["interest"] = {{"full_m", unit * scene.interest->full}, {"reach_m", unit * scene.interest->reach}};
+  }
 }
 
 /// Fractions of what would be sent without reduction need the trace.
@@ -134,6 +154,7 @@ Value stream_info_value(const Player& player, const StreamTotals& totals, std::u
            {"max_extrapolation_ticks", h.max_extrapolation},
            {"baseline_span", h.baseline_span},
            {"stream", stream_value(report)}};
+  add_parts(h, out);
   if (end.error) out["broken"] = {{"byte", end.error->bit_offset / 8}, {"rule", end.error->rule}};
   if (report.traffic) {
     out["profile"] = h.is_smoothed ? "main" : "thesis";

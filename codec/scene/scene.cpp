@@ -96,7 +96,8 @@ Result<void> find_broken_rule(const SceneSpec& spec, const MeshSupport* meshes, 
   if (spec.bounds && !are_bounds(spec)) return fail(Errc::invalid, "R-STR-17");
   if (state_bytes(spec) > limits.state_bytes) return fail(Errc::limit_exceeded, "R-STR-18");
   if (basis_work(spec) > limits.basis_work) return fail(Errc::limit_exceeded, "R-STR-21");
-  if (meshes && meshes->elastic_work(spec) > limits.elastic_work) return fail(Errc::limit_exceeded, "R-STR-24");
+  if (meshes == nullptr) return {};
+  if (meshes->elastic_work(spec) > limits.elastic_work) return fail(Errc::limit_exceeded, "R-STR-24");
   for (const DeformableObject& object : spec.deformables)
     if (object.body && !meshes->steps_stably(object, spec.grid.position, spec.tick_rate)) return fail(Errc::invalid, "R-ELA-5");
   return {};
