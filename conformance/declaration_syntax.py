@@ -13,7 +13,7 @@ import zlib
 from case_text import CaseError, Element, Elements, Value, bytes_of, digits
 from conventions import Cursor, StreamError, zigzag
 from deformable_header import CLUSTERS, COMPUTED, DECLARED, MAIN, THESIS
-from scene import BOUNDS, HAS_BODIES, HAS_DEFORMABLES, HAS_INTEREST, HAS_LOADS, HAS_MOTION, IS_DRIVEN, MAGIC, STIFFNESS, VERSION
+from scene import BOUNDS, HAS_BODIES, HAS_DEFORMABLES, HAS_INTEREST, HAS_LOADS, HAS_MOTION, IS_DRIVEN, MAGIC, PARTS, STIFFNESS, VERSION
 
 FIXED = struct.Struct("<4sBBHI")
 APART = ("magic", "version", "stream_profile", "body_size", "crc", "cut")
@@ -170,6 +170,11 @@ def several(f, name: str, form: str, count: int) -> None:
         f.number(name, form)
 
 
+def part(f, flags: int, flag: int) -> None:
+    for element in PARTS[flag] if flags & flag else ():
+        several(f, *element)
+
+
 def body(f, flags: int) -> None:
     """All of the declaration after `body_size` and before `crc`."""
     try:
@@ -186,27 +191,16 @@ def elements_of_body(f, flags: int) -> None:
     moving = sum(rigid_object(f) for _ in range(f.varint("object_count")))
     count = f.varint("deformable_count") if flags & HAS_DEFORMABLES else 0
     vertices = [deformable_object(f) for _ in range(count)]
-    if flags & HAS_LOADS:
-        several(f, "force_exp", "B", 1)
-        several(f, "load_users", "B", 1)
-    if flags & HAS_MOTION:
-        several(f, "gravity", "i", 3)
-        f.number("slide_deceleration", "i")
-    if flags & IS_DRIVEN:
-        for _ in range(moving):
-            several(f, "coupling", "I", 1)
-            several(f, "hold", "I", 1)
-            several(f, "inertia", "I", 3)
-            several(f, "friction", "H", 1)
-            several(f, "damping", "H", 1)
+    part(f, flags, HAS_LOADS)
+    part(f, flags, HAS_MOTION)
+    for _ in range(moving):
+        part(f, flags, IS_DRIVEN)
     if flags & HAS_BODIES:
         for _ in range(count):
             method = f.number("method", "B")
             if method:
                 elastic_body(f, method)
-    if flags & HAS_INTEREST:
-        f.number("full", "I")
-        f.number("reach", "I")
+    part(f, flags, HAS_INTEREST)
     while f.more():
         f.extension(lambda content, kind: extension(content, kind, moving, vertices, bool(flags & HAS_LOADS)))
 

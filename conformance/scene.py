@@ -32,7 +32,13 @@ class Limits(NamedTuple):
 MAGIC = b"\x89TCT"
 VERSION = 2                                                 # of the format
 SMALLEST_OBJECT = 32
-HAS_DEFORMABLES, HAS_LOADS, IS_SMOOTHED, HAS_MOTION, IS_DRIVEN, HAS_BODIES, HAS_INTEREST = (1 << bit for bit in range(7))   # of `flags`
+HAS_DEFORMABLES, HAS_LOADS, IS_SMOOTHED, HAS_MOTION, IS_DRIVEN, HAS_BODIES, HAS_INTEREST = FLAGS = [1 << bit for bit in range(7)]
+PARTS = {                                                   # elements of a flag: name, form, count; of IS_DRIVEN of each moving object
+    HAS_LOADS: (("force_exp", "B", 1), ("load_users", "B", 1)),
+    HAS_MOTION: (("gravity", "i", 3), ("slide_deceleration", "i", 1)),
+    IS_DRIVEN: (("coupling", "I", 1), ("hold", "I", 1), ("inertia", "I", 3), ("friction", "H", 1), ("damping", "H", 1)),
+    HAS_INTEREST: (("full", "I", 1), ("reach", "I", 1)),
+}
 
 
 class Contact(NamedTuple):                                  # chapter 42, section 3
@@ -142,7 +148,7 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(version == VERSION, "unsupported", "R-STR-2")
     require(profile <= 1, "malformed", "R-STR-3")
     require(profile == 0, "unsupported", "R-STR-3")
-    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_SMOOTHED + HAS_MOTION + IS_DRIVEN + HAS_BODIES + HAS_INTEREST, "malformed", "R-STR-4")
+    require(flags <= sum(FLAGS), "malformed", "R-STR-4")
     require(body_size <= limits.body_size, "limit_exceeded", "R-STR-14")
     end = 12 + body_size
     require(len(data) >= end + 4, *STR_5)
@@ -159,19 +165,19 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
         scene.deformables = read_deformable_objects(body, limits.objects - object_count, limits.vertices, limits.triangles,
                                                    limits.thesis)
     if flags & HAS_LOADS:
-        scene.loads = LoadDeclaration(*body.take(2, STR_5))
+        scene.loads = LoadDeclaration(*read_part(body, HAS_LOADS))
         require(scene.moving() and scene.loads.force_exp <= 20 and scene.loads.users <= 64, "invalid", "R-STR-19")
     if flags & HAS_MOTION:
         scene.motion = read_motion(body)
         require(scene.moving(), "invalid", "R-STR-22")
     if flags & IS_DRIVEN:
-        scene.driven = {i: read_driven(body) for i in scene.moving()}
+        scene.driven = {i: DrivenConstants(*read_part(body, IS_DRIVEN)) for i in scene.moving()}
         sound = all(is_sound(item) for item in scene.driven.values())
         require(sound and any(item.coupling for item in scene.driven.values()), "invalid", "R-STR-23")
     if flags & HAS_BODIES:
         read_elastic_bodies(body, scene.deformables, scene.position_exp)
     if flags & HAS_INTEREST:
-        scene.interest = Interest(*struct.unpack("<2I", body.take(8, STR_5)))
+        scene.interest = Interest(*read_part(body, HAS_INTEREST))
         require(scene.moving() and 1 <= scene.interest.full <= scene.interest.reach < 1 << 31, "invalid", "R-STR-25")
         scene.objects = [o._replace(initial=o.initial._replace(lod=OUT_OF_INTEREST)) for o in scene.objects]
     while body.left() > 0:
@@ -236,17 +242,21 @@ def read_object(body: Cursor) -> Object:
     return Object(name, dof, State(0, position, rotation))
 
 
+def read_part(body: Cursor, flag: int) -> list:
+    """A vector is a tuple."""
+    def element(form: str, count: int):
+        values = struct.unpack(f"<{count}{form}", body.take(count * struct.calcsize(form), STR_5))
+        return values if count > 1 else values[0]
+
+    return [element(form, count) for _, form, count in PARTS[flag]]
+
+
 def read_motion(body: Cursor) -> MotionConstants:
-    *gravity, deceleration = struct.unpack("<4i", body.take(16, STR_5))
+    motion = MotionConstants(*read_part(body, HAS_MOTION))
     most = 1 << 28
-    require(all(-most <= c <= most for c in gravity) and 0 <= deceleration <= most and (any(gravity) or deceleration),
-            "invalid", "R-STR-22")
-    return MotionConstants(tuple(gravity), deceleration)
-
-
-def read_driven(body: Cursor) -> DrivenConstants:
-    coupling, hold, *inertia, friction, damping = struct.unpack("<5I2H", body.take(24, STR_5))
-    return DrivenConstants(coupling, hold, tuple(inertia), friction, damping)
+    require(all(-most <= c <= most for c in motion.gravity) and 0 <= motion.slide_deceleration <= most
+            and (any(motion.gravity) or motion.slide_deceleration), "invalid", "R-STR-22")
+    return motion
 
 
 def is_sound(item: DrivenConstants) -> bool:
