@@ -20,8 +20,8 @@ build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev 
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
 view_packages='nodejs clang-16 lld-16 binaryen wasi-libc libc++-16-dev-wasm32 libc++abi-16-dev-wasm32 libclang-rt-16-dev-wasm32 python3'
 site_packages='python3 doxygen cmark-gfm'
-test_packages='libgtest-dev python3-pytest tetgen zstd lz4'
-all_packages='ccache git clang libclang-rt-dev clang-tidy clang-format chromium mono-mcs mono-runtime'
+test_packages='libgtest-dev python3-pytest git tetgen zstd lz4 xz-utils bzip2'
+all_packages='ccache clang libclang-rt-dev clang-tidy clang-format chromium mono-mcs mono-runtime'
 nightly_packages="$bench_packages $site_packages munge parallel slurm-wlm tshark umockdev libumockdev-dev valgrind firefox-esr xvfb abigail-tools python3-venv
   mandoc groff-base bsdextrautils zsh fish lintian dpkg-dev make openssl qemu-system-x86 linux-image-amd64 busybox-static cpio kmod"
 
