@@ -23,9 +23,8 @@ struct RigidSample {
 enum class Predictor : std::uint8_t {
   linear = 0,     ///< constant velocities: x + v dt, exp(w dt / 2) q
   ballistic = 1,  ///< gravity accelerates the position: x + v dt + g dt^2 / 2
-  slide =
-      2,  ///< both velocities fall to 0 together, v by a constant deceleration a: dt - dt^2 / (2 |v| / a) takes the place of dt
-  driven = 3,  ///< the device of the client pushes or holds it; for who does not know the device, constant velocities
+  slide = 2,      ///< both velocities fall to 0 together, v by a constant deceleration a: dt - dt^2 / (2 |v| / a) for dt
+  driven = 3,     ///< the device of the client pushes or holds it; for who does not know the device, constant velocities
 };
 inline constexpr unsigned kPredictorBits = 2;
 /// What an object that no device touches may follow instead of constant velocities.
