@@ -144,7 +144,7 @@ Sender::~Sender() = default;
 static Result<SenderOptions> checked(const Scene& scene, SenderOptions options) {
   for (const double interval : {options.policy.key_interval, options.policy.silence})
     if (!(interval >= 0 && interval <= 86400)) return fail(Errc::invalid_argument, "R-API-4");
-  if (!scene.moving().empty()) TACTUS_CHECK(RigidEncoder::check(options.triggers, scene.grid));
+  if (!scene.moving().empty()) TACTUS_CHECK(RigidBounds::check(options.triggers, scene.grid));
   if (!scene.deformables.empty()) TACTUS_CHECK(DeformableEncoder::check(options.deformable));
   if (scene.loads) TACTUS_CHECK(LoadEncoder::check(options.load));
   if (scene.moving().empty()) options.triggers = {};  // they may be anything

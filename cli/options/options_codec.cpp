@@ -12,7 +12,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/base/text.h>
-#include <tactus/rigid/rigid_encoder.h>
+#include <tactus/rigid/rigid_bounds.h>
 #include "cli/progress.h"
 
 namespace tactus::cli {
@@ -29,7 +29,7 @@ Check taken_by_encoder(double RigidTriggers::*bound, Dimension dimension, const 
     if (!typed) return typed.error();
     RigidTriggers triggers;
     triggers.*bound = typed->value;
-    return RigidEncoder::check(triggers, {}) ? std::string() : fmt::format("'{}': must be {}", text, range);
+    return RigidBounds::check(triggers, {}) ? std::string() : fmt::format("'{}': must be {}", text, range);
   };
   return Check(look, range);
 }

@@ -6,8 +6,6 @@
 ///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1.
 /// In a smoothed scene that is the smoothed path.
 /// A bound finer than the grid (a small force_floor, a stiff contact) means the nearest grid point.
-/// The encoder picks for every update the coarsest grid level that keeps the quantised state well inside these bounds. It
-/// evaluates the haptic error in floating point, which is an encoder's choice; decoding is in integers.
 #pragma once
 
 #include <array>
@@ -22,14 +20,13 @@
 #include <tactus/packet/substream_encoder.h>
 #include <tactus/rigid/awake_objects.h>
 #include <tactus/rigid/curve.h>
-#include <tactus/rigid/encoder_choices.h>
 #include <tactus/rigid/level_of_detail.h>
-#include <tactus/rigid/pose_thresholds.h>
+#include <tactus/rigid/rigid_bounds.h>
 #include <tactus/rigid/rigid_states.h>
 #include <tactus/rigid/rigid_syntax.h>
 #include <tactus/rigid/rigid_truth.h>
+#include <tactus/rigid/rigid_update.h>
 #include <tactus/rigid/rigid_work.h>
-#include <tactus/rigid/trigger.h>
 
 namespace tactus {
 
@@ -38,11 +35,9 @@ class RigidEncoder {
  public:
   using State = RigidStates;
 
-  /// R-API-4: a threshold is negative, NaN or finer than the grid.
-  static Result<void> check(const RigidTriggers& triggers, const GridExponents& grid) noexcept;
   /// in   work    that it shares with other encoders of this truth; null: with none
   ///      device  path of the receiver's device; null: it is not known
-  /// pre  check(), and all that is given outlives the encoder
+  /// pre  RigidBounds::check(), and all that is given outlives the encoder
   RigidEncoder(const Scene& scene, const RigidTriggers& triggers, const SenderPolicy& policy, const RigidTruth& truth,
                RigidWork* work, const DevicePath* device);
 
@@ -74,71 +69,41 @@ class RigidEncoder {
     bool follow_up = false;
     VersionedPath after;  // the state of its path is what the decoder will hold
   };
-  /// Of a level of detail, scaled.
-  struct Bounds {
-    double bound_scale = 1;
-    PoseThresholds visual, fixed, early;  // early: over which an object joins a packet
-  };
-  struct DrivenParts {
-    DrivenParts(const Scene& scene, const DevicePath& path) : choice(scene, path), past(scene), signalled(scene.objects.size()) {}
-    DrivenChoice choice;
-    PastStates past;
-    std::vector<DrivenContact> signalled;  // by object
-  };
-
-  void take() noexcept;
   void wake() noexcept;
   void wake(std::uint32_t object) noexcept;
   void look() noexcept;
   void choose_early() noexcept;
   std::uint8_t lod_of(std::uint32_t object) const noexcept { return levels_ ? levels_->of(object) : std::uint8_t{0}; }
-  const Bounds& bounds_of(std::uint32_t object) const noexcept { return bounds_[lod_of(object)]; }
+  bool is_reference() const noexcept { return bounds_.triggers().reduction == Reduction::none; }
   void sleep() noexcept;
   std::optional<std::int64_t> sleeps_until(std::uint32_t object) noexcept;
   RigidDecision decide(std::uint32_t object, bool early) noexcept;
   RigidDecision decide_alone(const SmoothedPath& path, bool early) const noexcept;
-  bool can_improve(std::uint32_t object, const RigidPose& shown) const noexcept;
-  double haptic_ratio_of(std::uint32_t object, const RigidPose& shown) const noexcept;
-  bool is_touched(std::uint32_t object) const noexcept;
   bool is_follow_up_due(std::uint32_t object) const noexcept;
   void collect(const EncodeRequest<RigidStates>& request) noexcept;
   bool is_silent() const noexcept { return silence_ > 0 && truth_.tick() - last_ >= silence_; }
   void add_joining(const EncodeRequest<RigidStates>& request) noexcept;
-  RigidTriggers scaled_triggers(std::uint32_t object) const noexcept;
-  RigidState truth_of(std::uint32_t object) const noexcept;
-  Predictor chosen(std::uint32_t object, const RigidState& truth, const RigidTriggers& bounds) const noexcept;
-  RigidState with_look_ahead(const RigidState& truth, std::uint32_t object, const Acceleration::Motion& acceleration,
-                             const ErrorRatio& ratio) const noexcept;
-  ErrorTrajectory error_trajectory(const RigidState& state, const RigidPose& kept, const RigidSample& truth,
-                                   const Acceleration::Motion& acceleration) const noexcept;
-  void choose_smoothing(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
-                        const ErrorRatio& ratio) const noexcept;
-  Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction, const RigidState& signalled) const noexcept;
-  Result<CodedUpdate> code(Pending& update, const EncodeRequest<RigidStates>& request) const noexcept;
   Result<Payload> code_all(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
   bool uses_common_work() const noexcept;
   void make_key(const EncodeRequest<RigidStates>& request) noexcept;
   Payload copy(const RigidWork::Body& body, std::span<std::uint8_t> out) noexcept;
 
   const Scene& scene_;
-  RigidTriggers triggers_;
+  RigidBounds bounds_;
   RigidPredictor predictor_;
-  std::array<Bounds, kOutOfInterest + 1> bounds_;  // by level of detail
-  bool acknowledges_;                              // Baseline::acknowledged
-  bool waits_ = false;                             // packets wait for their turn
-  double early_ = 1;                               // fraction of its bounds over which an object joins a packet
-  // Packets get lost: velocities do not look ahead, as curves over gaps end with them. More do: no device drives, as what the client does not
-  // know of it lasts for a round trip.
-  bool loses_ = false, loses_more_ = false, loses_much_ = false;
+  RigidUpdateCoder updates_;
+  bool acknowledges_;   // Baseline::acknowledged
+  bool joins_early_;    // objects that are near their bounds join a packet
+  bool waits_ = false;  // packets wait for their turn
+  // Packets get lost: no device drives, as what the client does not know of it lasts for a round trip.
+  bool loses_more_ = false, loses_much_ = false;
   std::array<std::int64_t, 3> follow_up_{};  // [ticks] without an acknowledgement before the first, the second and later; 0: none
   std::int64_t heartbeat_ = 0, silence_ = 0;           // [ticks], 0: off
   std::int64_t last_ = kNever, before_last_ = kNever;  // tick of the last payload, and of the one before
   const RigidTruth& truth_;
   RigidWork* work_;
-  std::uint64_t read_ = 0;                 // of the truth, that was looked at last
-  std::optional<PredictorChoice> choice_;  // if there is one
-  std::optional<LevelsOfDetail> levels_;   // in a scene with interest
-  std::optional<DrivenParts> driven_;      // if the receiver's device may drive objects
+  std::uint64_t read_ = 0;                // of the truth, that was looked at last
+  std::optional<LevelsOfDetail> levels_;  // in a scene with interest
   AwakeObjects awake_;
   bool wakes_all_ = true;  // at the next tick
   bool has_begun_ = false;
