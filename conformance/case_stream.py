@@ -9,12 +9,12 @@ from typing import NamedTuple, Optional
 from case_coder import Recorder, Writer, given_packet, install, taken_elements
 from case_text import Block, CaseError, Element, bytes_of, digits, parse, words
 from conventions import Cursor, StreamError
-from decoder import SceneDecoder
 from declaration_syntax import given_declaration, taken_declaration, varint_bytes
 from file import INDEX, NUMBERED, PACKET, PACKETS, TRAILER
 from packet import Receiver
 from range_coder import RangeDecoder
 from scene import Declaration, read_declaration
+from scene_decoder import SceneDecoder
 
 CUT = ("truncated", "")
 MOST_CHANGES = 4

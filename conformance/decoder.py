@@ -13,45 +13,24 @@ import struct
 import sys
 from typing import Iterator, Optional, Union
 
-from conventions import FNV_START, StreamError, fnv1a, require
+import session_script
+from conventions import FNV_START, StreamError, fnv1a
 from device_path import DevicePath
-from deformable_decoder import DeformableDecoder, DeformablePacket
+from deformable_decoder import DeformablePacket
 from elastic import Shapes
 from file import File
 from interpolation import MODES, InterpolatedReplica
-from load import LoadDecoder, LoadPacket
+from load import LoadPacket
 from playout import Playout
 from replica import Replica
-from rigid import Packet, RigidDecoder
+from rigid import Packet
 from scene import Declaration, Limits
+from scene_decoder import SceneDecoder
 
 
 PLAYOUT_DELAY = 100                                         # ticks
 
 
-class SceneDecoder:
-    """Chapter 25: the decoders of the substreams of a scene, by number."""
-
-    def __init__(self, scene: Declaration, limits: Limits = Limits()):
-        self.substreams: dict[int, Union[RigidDecoder, DeformableDecoder, LoadDecoder]] = {}
-        for substream in scene.substreams():
-            if substream == 0:
-                self.substreams[substream] = RigidDecoder(scene, limits)
-            elif substream <= len(scene.deformables):
-                self.substreams[substream] = DeformableDecoder(scene, scene.deformables[substream - 1], limits)
-            else:
-                self.substreams[substream] = LoadDecoder(scene, limits)
-
-    def split(self, data: bytes) -> tuple[int, bytes]:
-        """The substream of a packet, and the packet without its byte."""
-        if len(self.substreams) == 1:
-            return next(iter(self.substreams)), data
-        require(len(data) >= 1, "truncated", "R-PKT-6")
-        require(data[0] in self.substreams, "invalid", "R-PKT-6")
-        return data[0], data[1:]
-
-
-# ---- Testee (README.md) ---------------------------------------------------------------------------------------------
 def describe_declaration(scene: Declaration) -> dict:
     out = {"version": scene.version, "profile": scene.profile, "tick_rate": scene.tick_rate,
             "grid": [scene.position_exp, scene.velocity_exp, scene.rotation_exp, scene.angular_exp],
@@ -157,11 +136,6 @@ class Viewer:
         return fnv1a(struct.pack(f"<Q{len(displacements)}i", shown, *displacements))
 
 
-def session_lines(limits: Limits) -> Iterator[dict]:
-    import session                                          # which imports this module
-    return session.lines(sys.stdin.read(), limits)
-
-
 def main(arguments: Optional[list[str]] = None) -> int:
     parser = argparse.ArgumentParser(description="Decode a Tactus stream file from standard input to JSON lines.")
     parser.add_argument("--replica", choices=("none", "device", *MODES, "playout"),
@@ -173,7 +147,7 @@ def main(arguments: Optional[list[str]] = None) -> int:
     if options.replica in MODES and not limits.thesis:
         parser.error(f"--replica {options.replica} needs component thesis")
     try:
-        for line in session_lines(limits) if options.session else lines(sys.stdin.buffer.read(), options.replica, limits):
+        for line in session_script.lines(sys.stdin.read(), limits) if options.session else lines(sys.stdin.buffer.read(), options.replica, limits):
             print(json.dumps(line, separators=(",", ":")))
     except StreamError as error:
         print(json.dumps({"error": {"errc": error.errc, "rule": error.rule}}, separators=(",", ":")))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compare a decoder, the testee, with decoder.py on damaged vectors, or both ends of a session with session.py (README.md).
+"""Compare a decoder, the testee, with decoder.py on damaged vectors, or both ends of a session with session_script.py (README.md).
 
 Damage is seeded: the same seed and number give the same file. Check values are repaired after most of it, so that it reaches the code
 behind them. Exit status: 0 no difference, 1 a difference, 2 wrong use. Python's standard library only; POSIX.
@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Optional
 
 import decoder
-import session
+import session_script
 from conventions import StreamError
 from file import File
 from interpolation import MODES
@@ -195,9 +195,9 @@ def compare_sessions(options: argparse.Namespace, scripts: Scripts) -> int:
     for number in range(options.first, options.first + options.cases):
         text = make_script(scripts, options.seed, number)
         try:
-            lines = list(session.lines(text, limits))
-        except Exception as error:                          # a defect of session.py, not of the script
-            found = f"session.py: {error!r}"
+            lines = list(session_script.lines(text, limits))
+        except Exception as error:                          # a defect of ours, not of the script
+            found = f"session_script.py: {error!r}"
             lines = []
         else:
             found = first_difference(command, text.encode("ascii"), (0, [json.dumps(line, separators=(",", ":")) for line in lines]))

@@ -17,11 +17,11 @@ MODULES = {
     "driven": ("client",), "elastic": ("client",), "elastic_step": ("client",), "elastic_touch": ("client",), "elastic_matrix": ("client", "scene"),
     "elastic_header": ("scene",),
     "start_models": ("rigid", "deformable"),
-    "decoder": ("packet", "client"),
+    "decoder": ("packet", "client"), "scene_decoder": ("packet", "client"),
     "deformable_basis": ("deformable",), "deformable_clusters": ("deformable",), "deformable_header": ("deformable",), "deformable_graph": ("deformable",), "deformable_main": ("deformable",),
     "deformable_motion": ("deformable",), "deformable_decoder": ("deformable", "packet"),
     "thesis_mesh": ("thesis",), "interpolation": ("thesis",)}
-LEFT_ALONE = {"main", "session_lines"}                                       # functions
+LEFT_ALONE = {"main"}                                       # functions
 KINDS = ("constant", "index", "comparison", "clamp", "arithmetic", "rounding", "condition", "check", "order")
 
 COMPARISONS = {ast.Lt: (ast.LtE, ast.GtE), ast.LtE: (ast.Lt, ast.Gt), ast.Gt: (ast.GtE, ast.LtE), ast.GtE: (ast.Gt, ast.Lt),

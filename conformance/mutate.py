@@ -64,7 +64,7 @@ class Loader(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 def answer(vector: Vector) -> list[str]:
     """What the decoder says, a line at a time; ends at the first line that is not the one wanted."""
     import decoder
-    import session
+    import session_script
     from conventions import StreamError
     printed: list[str] = []
 
@@ -74,7 +74,7 @@ def answer(vector: Vector) -> list[str]:
 
     try:
         is_script = "session" in vector.case.traits
-        for line in session.lines(vector.data.decode("ascii")) if is_script else decoder.lines(vector.data, vector.mode()):
+        for line in session_script.lines(vector.data.decode("ascii")) if is_script else decoder.lines(vector.data, vector.mode()):
             if not say(line):
                 break
     except StreamError as error:

@@ -279,7 +279,6 @@ def make_testee(command: Optional[str], without: set[str]) -> Testee:
     if command:
         return lambda arguments, data: run_testee(shlex.split(command) + arguments, data)
     import decoder                                          # beside this file
-    import session  # noqa: F401                            # which it imports late
     lacks = [word for name in sorted(COMPONENTS.keys() & without) for word in ("--without", name)]
     return lambda arguments, data: reply_of(lambda stdin: Fork(decoder.main, arguments + lacks, stdin), data)
 

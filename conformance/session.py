@@ -2,7 +2,6 @@
 """Chapter 70 of the specification: epochs and the client's end, as functions of datagrams and time. No socket, no clock."""
 from __future__ import annotations
 
-import json
 import struct
 from typing import Callable, Iterator, Optional
 
@@ -10,11 +9,11 @@ from conventions import Cursor, StreamError, fnv1a, require
 from datagram import (UP, DOWN, HANDSHAKE, PARTS, PACKET, JOIN, WELCOME, REFUSAL, LEAVE, ACK, CLOCK, BUTTONS, PIECE, STATE, HASH, FRAGMENT,
                       PACKET_PART, REPORT, TICK_MAPPING, SEAT, BASELINES, BYE, TOO_LARGE, SILENCE, NO_SCENE, NO_TIMING, END_OF_TIME, CUT, SPARE,
                       sealed, is_of_epoch, head, varint, part, reason_of, read_parts)
-from decoder import SceneDecoder
 from deformable_decoder import DeformableDecoder
 from device_path import DevicePath, device_scene
 from rigid import RigidDecoder
 from scene import THESIS, Declaration, Limits, read_declaration
+from scene_decoder import SceneDecoder
 
 PREVIOUS = 0                                                # policies of baselines
 MOST_HELD, BYTES_HELD, LONGEST_HELD = 1024, 1 << 16, 2_000_000
@@ -433,62 +432,3 @@ class Client:
             self.leaving = sealed(head(HANDSHAKE, LEAVE) + bytes([reason]), self.epoch.epoch)
         if self.state != "closed":
             self.state, self.reason = "closed", reason
-
-
-# ---- Testee (README.md) ---------------------------------------------------------------------------------------------
-ACK_DELAY = 10 * MS
-
-
-def sent_by(datagrams: list[bytes]) -> dict:
-    """What a client has sent, apart from when: acknowledgement, hashes, whole handshakes."""
-    out: dict = {}
-    for datagram in datagrams:
-        form = datagram[0] & 3
-        if form == HANDSHAKE:
-            out.setdefault("says", []).append(datagram.hex())
-        cursor = Cursor(datagram, 2, len(datagram) - 4)
-        while form == PARTS and cursor.left():
-            kind, size = cursor.number(1, CUT), cursor.varint(CUT, SPARE)
-            e = Cursor(cursor.take(size, CUT), 0, size)
-            if kind == ACK:
-                out["acknowledges"] = [e.number(2, CUT), e.number(2, CUT), f"{e.varint(CUT, SPARE):016x}"]
-            elif kind == HASH:
-                out.setdefault("hashes", []).append([e.number(1, CUT), e.number(2, CUT), f"{e.number(4, CUT):08x}"])
-    return {name: out[name] for name in ("acknowledges", "hashes", "says") if name in out}
-
-
-def lines(script: str, limits: Limits = Limits()) -> Iterator[dict]:
-    """A line for each line of a script: what the end that it is for makes of it, and what it sends then. `limits` are a client's."""
-    if '"serve":' in script.split("\n", 1)[0]:
-        import session_server                               # which imports this module
-        yield from session_server.lines(script)
-        return
-    client: Optional[Client] = None
-    reported = None
-    for number, line in enumerate(script.splitlines()):
-        step, error, out = json.loads(line), None, []
-        if client:
-            client.pass_time(step["at"])
-        try:
-            if "join" in step:
-                client = Client(int(step["join"], 16), now=step["at"], limits=limits)
-            elif "heard" in step:
-                client.handle(step["at"], bytes.fromhex(step["heard"]))
-            else:
-                client.leave()
-        except StreamError as e:
-            error = e
-        sent = sent_by(list(client.poll(step["at"] + ACK_DELAY)))
-        newest, held, missing = sent.get("acknowledges", (None, 0, None))
-        if reported == (newest, missing):
-            del sent["acknowledges"]                        # nothing new
-        reported = (newest, missing) if newest is not None else reported
-        answer = {"line": number, "state": client.state}
-        if client.state == "closed":
-            answer["reason"] = client.reason
-        if error:
-            answer["error"] = {"errc": error.errc, "rule": error.rule}
-        answer.update(sent)
-        if client.state == "live":
-            answer["states"] = [f"{d.state_hash():016x}" for d in client.epoch.decoders.substreams.values()]
-        yield answer

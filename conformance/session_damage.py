@@ -12,7 +12,7 @@ from typing import Optional
 
 from datagram import DOWN, FORMS, HANDSHAKE, KINDS, PACKET, PARTS, UP, WELCOME, head, is_of_epoch, part, sealed, varint
 from run import load_cases
-from session_server import split_mix
+from session_script import split_mix
 
 LONGEST = 60_000                                            # bytes of a script: larger ones are slow and show nothing more
 STEPS = {DOWN: [16_011] * 12 + [150_000, 700_000, 3_000_000, 11_000_000, 121_000_000], UP: [300_017] * 12 + [30_017, 900_000, 11_000_000, 121_000_000]}  # us

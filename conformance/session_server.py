@@ -2,18 +2,16 @@
 """Chapter 70 of the specification: the server's end of sessions whose objects rest, as a function of datagrams and time."""
 from __future__ import annotations
 
-import json
 import struct
 from typing import Iterator, Optional
 
 from conventions import Cursor, StreamError, fnv1a, require
-from datagram import (ACK, BUTTONS, BYE, CUT, DOWN, FULL, HANDSHAKE, JOIN, LEAVE, TICK_MAPPING, PACKET, PARTS, PIECE, PROTOCOL, REFUSAL, SILENCE,
-                      SPARE, STATE, TOO_LARGE, UP, WELCOME, WRONG_VERSION, head, is_of_epoch, part, reason_of, sealed, varint)
-from decoder import SceneDecoder
+from datagram import (BUTTONS, BYE, CUT, DOWN, FULL, HANDSHAKE, JOIN, LEAVE, TICK_MAPPING, PACKET, PIECE, PROTOCOL, REFUSAL, SILENCE, SPARE,
+                      STATE, TOO_LARGE, UP, WELCOME, WRONG_VERSION, head, is_of_epoch, part, reason_of, sealed, varint)
 from device_path import DevicePath, device_scene
-from scene import Declaration, read_declaration, state_bytes
+from scene import read_declaration, state_bytes
+from scene_decoder import SceneDecoder
 from session import FIRST_ANSWER, MS, PIECE_SIZE, WINDOW, Epoch
-
 
 LEAST_JOIN = 80                                             # bytes
 WELCOME_EVERY, UNVALIDATED, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
@@ -312,95 +310,3 @@ class Server:
             if c.validated:
                 for datagram in c.epoch.poll(now):
                     yield c.peer, datagram
-
-
-# ---- Testee (README.md) ---------------------------------------------------------------------------------------------
-ACK_DELAY = 25 * MS
-
-
-def split_mix(state: int) -> Iterator[int]:
-    """SplitMix64."""
-    most = (1 << 64) - 1
-    while True:
-        state = (state + 0x9E3779B97F4A7C15) & most
-        z = ((state ^ state >> 30) * 0xBF58476D1CE4E5B9) & most
-        z = ((z ^ z >> 27) * 0x94D049BB133111EB) & most
-        yield z ^ z >> 31 or 1
-
-
-class Listener:
-    """What the server has sent to each address."""
-
-    def __init__(self) -> None:
-        self.newest: dict[int, int] = {}                    # number of a datagram
-        self.reported: dict[int, tuple] = {}
-
-    def acknowledgement(self, peer: int, number: int, epoch: int, parts: bytes) -> bytes:
-        ack = part(ACK, struct.pack("<HHB", self.newest.get(peer, 0), 65535, 0))
-        return sealed(head(PARTS, number) + ack + parts, epoch, UP)
-
-    def hear(self, sent: list[tuple[int, bytes]]) -> dict:
-        acks, handshakes = {}, set()
-        for peer, datagram in sent:
-            value = struct.unpack("<H", datagram[:2])[0] >> 2
-            if datagram[0] & 3 == HANDSHAKE:
-                handshakes.add((peer, datagram.hex()))
-                if value == WELCOME and datagram not in self.reported.get(("welcome", peer), ()):
-                    self.newest[peer] = 0
-                    self.reported.pop(peer, None)
-                    self.reported["welcome", peer] = (datagram,)
-                continue
-            self.newest[peer] = value
-            cursor = Cursor(datagram, 2, len(datagram) - 4)
-            while cursor.left():
-                kind, size = cursor.number(1, CUT), cursor.varint(CUT, SPARE)
-                e = Cursor(cursor.take(size, CUT), 0, size)
-                if kind == ACK:
-                    acks[peer] = [peer, e.number(2, CUT), e.number(2, CUT), f"{e.varint(CUT, SPARE):016x}"]
-        out: dict = {}
-        for peer, ack in sorted(acks.items()):
-            if self.reported.get(peer) != (ack[1], ack[3]):
-                out.setdefault("acknowledges", []).append(ack)
-            self.reported[peer] = ack[1], ack[3]
-        if handshakes:
-            out["says"] = [list(item) for item in sorted(handshakes)]
-        return out
-
-
-def lines(script: str) -> Iterator[dict]:
-    """A line for each line of a script: who is there, and what the server sends 25 ms later."""
-    server, listener = None, Listener()
-    for number, line in enumerate(script.splitlines()):
-        step, error = json.loads(line), None
-        now, peer = step["at"], step.get("from", 0)
-        if "serve" in step:
-            server = Server(bytes.fromhex(step["serve"]), step["clients"], split_mix(int(step["entropy"], 16)), now)
-        server.pass_time(now)
-        try:
-            if "heard" in step:
-                server.handle(now, peer, bytes.fromhex(step["heard"]))
-            elif "acknowledges" in step:
-                server.handle(now, peer, listener.acknowledgement(peer, step["acknowledges"], int(step["epoch"], 16), bytes.fromhex(step["parts"])))
-            elif "scene" in step:
-                server.replace(bytes.fromhex(step["scene"]), now)
-            elif "closes" in step:
-                server.let_go(step["closes"], step["reason"])
-        except StreamError as e:
-            error = e
-        sent = listener.hear(list(server.poll(now + ACK_DELAY)))
-        answer: dict = {"line": number, "clients": [[c.peer, c.client, ROLES[c.role], c.state()] for c in server.there()]}
-        if server.left:
-            answer["left"] = [list(item) for item in server.left]
-            server.left = []
-        if error:
-            answer["error"] = {"errc": error.errc, "rule": error.rule}
-        answer.update(sent)
-        devices = [device_of(c.epoch) for c in server.there() if c.epoch.live and c.epoch.participates]
-        if devices:
-            answer["devices"] = devices
-        yield answer
-
-
-def device_of(epoch: ServedEpoch) -> list:
-    decoder = epoch.decoders.substreams[0]
-    return [epoch.client, f"{decoder.state_hash():016x}"] + ([epoch.buttons[1]] if epoch.packets else [])

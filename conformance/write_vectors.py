@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import decoder
-import session
+import session_script
 from case_coder import install
 from case_stream import Earlier, blocks_of, stream_of
 from case_text import Case, CaseError, read_cases, text_of_block
@@ -80,7 +80,7 @@ def answer_of(case: Case, data: bytes) -> str:
     lines: list[dict] = []
     try:
         if is_script(case.fields):
-            lines.extend(session.lines(data.decode("ascii")))
+            lines.extend(session_script.lines(data.decode("ascii")))
         else:
             for line in decoder.lines(data, args[1] if args else None):
                 lines.append(line)

@@ -19,7 +19,7 @@ from captures import ROOT, Row, rows_of
 
 sys.path.insert(0, str(ROOT / "conformance"))
 from conventions import Cursor, StreamError  # noqa: E402
-from decoder import SceneDecoder  # noqa: E402
+from scene_decoder import SceneDecoder  # noqa: E402
 from scene import read_declaration  # noqa: E402
 import datagram  # noqa: E402
 import session  # noqa: E402
