@@ -40,7 +40,7 @@ std::vector<Kind> look() {
   return kinds;
 }
 
-Value value_of(const std::vector<Kind>& kinds, const device::RealTime& real_time) {
+Value devices_value(const std::vector<Kind>& kinds, const device::RealTime& real_time) {
   Json out{{"schema", "tactus.devices/1"}, {"backends", Json::array()}, {"privileges", Json::array()}};
   for (const Kind& kind : kinds) {
     Json devices = Json::array();
@@ -63,10 +63,10 @@ Value value_of(const std::vector<Kind>& kinds, const device::RealTime& real_time
   return out;
 }
 
-Outcome run(const DevicesOptions& options) {
+Outcome run_devices(const DevicesOptions& options) {
   const device::RealTime real_time;
   const std::vector<Kind> kinds = look();
-  print(value_of(kinds, real_time), "devices", options.common);
+  print(devices_value(kinds, real_time), "devices", options.common);
   return {};
 }
 
@@ -77,7 +77,7 @@ void setup_devices(Command& app, Action& action) {
   Command& command = app.add_command("devices", "List force-feedback devices, what they lack, and how to get it");
   add_report_options(command, options->common);
   command.footer("It opens no device and loads no firmware.");
-  on_chosen<DevicesOptions>(command, action, options, run);
+  on_chosen<DevicesOptions>(command, action, options, run_devices);
 }
 
 // ==== cmd capture ====
@@ -126,7 +126,7 @@ double rate_of(const CaptureOptions& options, const device::Capabilities& device
   return !options.scene.empty() || device.rate == 0 ? sim::kTickRate : device.rate;
 }
 
-Outcome run(const CaptureOptions& options) {
+Outcome run_capture(const CaptureOptions& options) {
   const std::vector<std::string> others{options.scene, replayed_file(options.device)};
   TACTUS_CHECK(OutputFile::check_free(options.output, options.common.existing(), others));
   std::size_t user = 0;
@@ -168,6 +168,7 @@ void setup_capture(Command& app, Action& action) {
   Command& command = app.add_command("capture", "Record what a hand does on a force-feedback device, and let it feel a scene");
   command.add_option("-o,--output", options->output, "Trace to write (MCAP)")->type_name("FILE")->required();
   add_device_options(command, options->device);
+  add_scale(command, options->device);
   command.add_option("--scene", options->scene, "What the hand touches, simulated here at 1 kHz [nothing: motion alone]")
       ->type_name("SCENE");
   command
@@ -189,7 +190,7 @@ void setup_capture(Command& app, Action& action) {
       "Example:\n  tactus capture -o hand.mcap --scene rotate-push-lift --subject 7\n"
       "  tactus capture -o hand.mcap --device falcon --firmware nvent.bin\n"
       "  tactus capture -o glove.mcap --device hid:/dev/hidraw3");
-  on_chosen<CaptureOptions>(command, action, options, run);
+  on_chosen<CaptureOptions>(command, action, options, run_capture);
 }
 
 // ==== cmd play ====
@@ -233,7 +234,7 @@ tl::unexpected<Failure> refuse_recording(const PlayOptions& options, const Diagn
                           "`tactus info` names those of a trace.");
 }
 
-Value value_of(const PlayOptions& options, const DeviceRun& run, const RenderedRecording::Distance& distance) {
+Value play_value(const PlayOptions& options, const DeviceRun& run, const RenderedRecording::Distance& distance) {
   Value out = Json{{"schema", "tactus.play/1"},
                    {"recording", options.trace},
                    {"exerted", name_of(options.exerted)},
@@ -242,7 +243,7 @@ Value value_of(const PlayOptions& options, const DeviceRun& run, const RenderedR
   return out;
 }
 
-Outcome run(const PlayOptions& options) {
+Outcome run_play(const PlayOptions& options) {
   const std::vector<std::string> others{options.trace, replayed_file(options.device)};
   if (!options.output.empty()) TACTUS_CHECK(OutputFile::check_free(options.output, options.common.existing(), others));
   auto recording = device::Recording::read(
@@ -271,7 +272,7 @@ Outcome run(const PlayOptions& options) {
     return failed(worked.error(), run);
   }
   if (output) TACTUS_CHECK(output->keep());
-  print(value_of(options, run, rendered.distance()), "play", options.common);
+  print(play_value(options, run, rendered.distance()), "play", options.common);
   return check_complete(run);
 }
 
@@ -306,7 +307,7 @@ void setup_play(Command& app, Action& action) {
       "where the hand was: hold the handle, and begin with a small --force-limit.\n"
       "Examples:\n  tactus play hand.mcap --device falcon --exert path --playback-rate 0.5\n"
       "  tactus play hand.mcap --device openhaptics --exert force --force-limit 1N -o played.mcap");
-  on_chosen<PlayOptions>(command, action, options, run);
+  on_chosen<PlayOptions>(command, action, options, run_play);
 }
 
 }  // namespace tactus::cli

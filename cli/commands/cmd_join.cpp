@@ -38,8 +38,8 @@ Json hashes_json(SessionClient& session) {
   return out;
 }
 
-Value value_of(const JoinOptions& options, SessionClient& session, const Visit& visit, const TickTiming& timing, double seconds,
-               const std::optional<SealUse>& seal) {
+Value join_value(const JoinOptions& options, SessionClient& session, const Visit& visit, const TickTiming& timing, double seconds,
+                 const std::optional<SealUse>& seal) {
   const SessionStatus status = session.status();
   Json out{{"schema", "tactus.join/1"},
            {"server", options.server},
@@ -95,7 +95,7 @@ Outcome take_part(const JoinOptions& options, SessionClient& session, Visit& vis
   return {};
 }
 
-Outcome run(const JoinOptions& typed) {
+Outcome run_join(const JoinOptions& typed) {
   JoinOptions options = typed;
   TACTUS_TRY(const net::Address server, session_address("SERVER", options.server, options.key));
   options.server = server.text();
@@ -139,7 +139,7 @@ Outcome run(const JoinOptions& typed) {
     if (failure.signal = visit.closed ? 0 : StopOnSignal::caught(); failure.signal != 0) failure.cause = Failure::Cause::stopped;
     return tl::unexpected(std::move(failure));
   }
-  print(value_of(options, *session, visit, visit.tick_timing(ticker), seconds, wire->seal()), "join", options.common);
+  print(join_value(options, *session, visit, visit.tick_timing(ticker), seconds, wire->seal()), "join", options.common);
   if (visit.lost > 0) {
     Failure failure{fmt::format("{}: {} lost", options.output, counted(visit.lost, "tick")), "Write to a faster disk."};
     failure.cause = Failure::Cause::bound;
@@ -162,6 +162,7 @@ void setup_join(Command& app, Action& action) {
       ->type_name("SCENE");
   command.add_option("--user", options->user, "The user of the scene whose hand it is [the first]")->type_name("NAME");
   add_device_options(command, options->device);
+  add_scale(command, options->device);
   command
       .add_option("-o,--output", options->output, "Also write a trace of what is shown and rendered, on the server's time (MCAP)")
       ->type_name("FILE");
@@ -180,7 +181,7 @@ void setup_join(Command& app, Action& action) {
   command.footer(std::string(limits_help()) +
                  "\n\nExample:\n  tactus join 7447 --scene rotate-push-lift -o client.mcap\n"
                  "From another machine:\n  tactus join 192.0.2.1:7447 --key lab.key --scene rotate-push-lift");
-  on_chosen<JoinOptions>(command, action, options, run);
+  on_chosen<JoinOptions>(command, action, options, run_join);
 }
 
 }  // namespace tactus::cli

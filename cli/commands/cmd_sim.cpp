@@ -95,7 +95,7 @@ void report_errors(const sim::Simulation& simulation, Report& report) {
   }
 }
 
-std::set<Subject> subjects_of(const sim::Scene& scene) {
+std::set<Subject> subjects_of_scene(const sim::Scene& scene) {
   std::set<Subject> held;
   const bool moves =
       std::any_of(scene.objects.begin(), scene.objects.end(), [](const sim::SceneObject& o) { return o.dof != Dof::none; });
@@ -272,10 +272,10 @@ Outcome check_options(const SimOptions& options) {
   return {};
 }
 
-Outcome run(const SimOptions& options) {
+Outcome run_sim(const SimOptions& options) {
   TACTUS_CHECK(check_options(options));
   TACTUS_TRY(const auto scene, read_scene(options));
-  note_idle_options(*options.common.command, subjects_of(scene), "scene");
+  note_idle_options(*options.common.command, subjects_of_scene(scene), "scene");
   Networked networked;
   TACTUS_TRY(const auto settings, settings_of(options, scene, networked));
   if (options.has_network()) {
@@ -356,8 +356,8 @@ void setup_sim(Command& app, Action& action) {
   Command& command = app.add_command("sim", "Simulate a touch and record a trace");
   command
       .add_option("SCENE", options->scene,
-                  "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, membrane-large, membrane-small, msd-1d, "
-                  "bracket-and-pad, push-cube, jenga-together, jenga-press, jenga-against, or a TOML file")
+                  "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, membrane-large, membrane-small, slab, "
+                  "msd-1d, bracket-and-pad, push-cube, jenga-together, jenga-press, jenga-against, or a TOML file")
       ->type_name("")
       ->required();
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")
@@ -424,7 +424,7 @@ void setup_sim(Command& app, Action& action) {
       "  tactus sim rotate-push-lift -o far.mcap -p 4% --link delay=20ms,jitter=5ms,loss=1%\n"
       "\n" +
       std::string(link_help()));
-  on_chosen<SimOptions>(command, action, options, run);
+  on_chosen<SimOptions>(command, action, options, run_sim);
 }
 
 }  // namespace tactus::cli

@@ -116,7 +116,7 @@ tl::expected<ChosenDevice, Failure> open_virtual(const DeviceArguments& argument
   }
   auto hand = std::make_unique<VirtualDevice>(*scene, user, arguments.seed);
   VirtualDevice* const seen = hand.get();
-  return ChosenDevice{std::move(hand), seen, true};
+  return ChosenDevice{std::move(hand), seen};
 }
 
 }  // namespace
@@ -172,6 +172,14 @@ void add_device_options(Command& command, DeviceArguments& arguments) {
       ->type_name("N");
 }
 
+void add_scale(Command& command, DeviceArguments& arguments) {
+  command
+      .add_option("--scale", arguments.scale,
+                  "The probe moves so many times as far as the device, and the device exerts so many times less [the scene's]")
+      ->check(number(sim::kLeastDeviceScale, sim::kLargestDeviceScale))
+      ->type_name("FACTOR");
+}
+
 std::string replayed_file(const DeviceArguments& arguments) {
   const auto [backend, which] = split(arguments.name);
   return backend == kReplay ? which : "";
@@ -197,12 +205,16 @@ tl::unexpected<Failure> refuse_device(const std::string& name, const Error& erro
 
 tl::expected<ChosenDevice, Failure> open_device(const DeviceArguments& arguments, const sim::Scene* scene, std::size_t user) {
   const auto [backend, which] = split(arguments.name);
+  if (arguments.scale > 0 && (scene == nullptr || backend == kVirtual || backend == kReplay))
+    return refuse_arguments(scene == nullptr ? "--scale: nothing is touched without --scene"
+                                             : fmt::format("--scale: the probe is where the hand of --device {} is", backend),
+                            "Leave it out.");
   if (backend == kVirtual) return open_virtual(arguments, which, scene, user);
   if (backend == kReplay) {
     auto device =
         device::open_replay_device(which, {.user = {}, .playback_rate = arguments.playback_rate, .loops = arguments.loops});
     if (!device) return refuse(device.error());
-    return ChosenDevice{std::move(*device), nullptr, true};
+    return ChosenDevice{std::move(*device)};
   }
   const auto found = std::ranges::find(backends(), backend, [](const auto& known) { return known->name(); });
   if (found == backends().end())
@@ -210,7 +222,10 @@ tl::expected<ChosenDevice, Failure> open_device(const DeviceArguments& arguments
                             fmt::format("Take one of {}.", known_backends()));
   auto device = (*found)->open(which, arguments.open);
   if (!device) return refuse(device.error());
-  return ChosenDevice{std::move(*device)};
+  ChosenDevice chosen{std::move(*device)};
+  if (scene == nullptr) return chosen;
+  chosen.frame = {scene->users[user].start, arguments.scale > 0 ? arguments.scale : scene->users[user].device.scale};
+  return chosen;
 }
 
 }  // namespace tactus::cli

@@ -57,6 +57,7 @@ struct DeviceArguments {
   device::OpenOptions open{};
   double force = 0;  ///< [N] 0: what the device can hold
   bool passivity = false;
+  double scale = 0;          ///< of its frame; 0: that of the scene
   double playback_rate = 1;  ///< of a recording
   bool loops = false;
   std::uint64_t seed = 1;  ///< of a virtual hand
@@ -65,6 +66,8 @@ struct DeviceArguments {
   device::GuardLimits limits() const { return {.force = force, .passivity = passivity}; }
 };
 void add_device_options(Command& command, DeviceArguments& arguments);
+/// Of a command in which the device touches a scene.
+void add_scale(Command& command, DeviceArguments& arguments);
 
 /// The file that a replayed device is read from; empty: it is no such device.
 std::string replayed_file(const DeviceArguments& arguments);
@@ -77,11 +80,23 @@ Outcome check_position(const device::Capabilities& device);
 /// What a device said, or the servo loop about it. Nothing of it is the operating system's.
 tl::unexpected<Failure> refuse_device(const std::string& name, const Error& error);
 
+/// Where a device's frame is in the world. The probe moves `scale` times as far as the device, and the device exerts its force / scale.
+struct DeviceFrame {
+  Vec3 origin{};  ///< [m]
+  double scale = 1;
+
+  DeviceSample to_world(DeviceSample sample) const noexcept {
+    sample.position = origin + scale * sample.position;
+    sample.velocity = scale * sample.velocity;
+    return sample;
+  }
+};
+
 /// An open device.
 struct ChosenDevice {
   std::unique_ptr<device::Device> device;
   VirtualDevice* hand = nullptr;  ///< it is a virtual one
-  bool in_world = false;          ///< its frame is the world's: a virtual hand, or a recording
+  DeviceFrame frame{};            ///< the world's, of a virtual hand or a recording; else its origin is where the user begins
 };
 /// in   scene, user  that the device touches; none: a virtual hand moves as in the scene that its name names, or push-1dof
 tl::expected<ChosenDevice, Failure> open_device(const DeviceArguments& arguments, const sim::Scene* scene, std::size_t user);

@@ -161,10 +161,11 @@ Outcome DeviceLoop::go_on(Servo& servo) {
 Outcome DeviceLoop::tick(Servo& servo, const ServoTick& tick) {
   const auto force = rendered_.step(tick, frame_);
   if (!force) return tl::unexpected(force.error());
-  if (const auto exerted = servo.exert(*force); !exerted) return device_failed(exerted.error());
+  if (const auto exerted = servo.exert((1 / rendered_.scale()) * *force); !exerted) return device_failed(exerted.error());
   const device::ForceGuard* guard = servo.guard();
   UserSample& user = frame_.users[rendered_.user()];
-  user.force = guard != nullptr ? guard->written() : Vec3{};
+  const Vec3 written = guard != nullptr ? guard->written() : Vec3{};
+  user.force = rendered_.scale() * written;
   user.device.time = tick.reading.taken;
   user.servo = {tick.lateness, tick.age, tick.missed, guard != nullptr ? guard->actions() : 0U};
   if (const DeviceReports* const reports = device_.reports()) {
@@ -178,17 +179,17 @@ Outcome DeviceLoop::tick(Servo& servo, const ServoTick& tick) {
   outcomes_.last_tick = tick.number;
   ++outcomes_.ticks;
   outcomes_.missed += tick.missed;
-  outcomes_.largest_force = std::max(outcomes_.largest_force, norm(user.force));
-  publish(tick);
+  outcomes_.largest_force = std::max(outcomes_.largest_force, norm(written));
+  publish(tick, norm(written));
   return {};
 }
 
-void DeviceLoop::publish(const ServoTick& tick) noexcept {
+void DeviceLoop::publish(const ServoTick& tick, double force) noexcept {
   constexpr auto kRelaxed = std::memory_order_relaxed;
   ticks_.store(outcomes_.ticks, kRelaxed);
   missed_.store(outcomes_.missed, kRelaxed);
   lost_.store(outcomes_.device_lost, kRelaxed);
-  force_.store(norm(frame_.users[rendered_.user()].force), kRelaxed);
+  force_.store(force, kRelaxed);
   if (tick.lateness > worst_.load(kRelaxed)) worst_.store(tick.lateness, kRelaxed);
   state_.store(tick.reading.state, kRelaxed);
 }

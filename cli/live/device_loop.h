@@ -105,7 +105,7 @@ class DeviceLoop {
   TraceInfo describe() const;
   Outcome go_on(device::Servo& servo);
   Outcome tick(device::Servo& servo, const device::ServoTick& tick);
-  void publish(const device::ServoTick& tick) noexcept;
+  void publish(const device::ServoTick& tick, double force) noexcept;
   void conclude(device::Servo& servo);
   tl::unexpected<Failure> device_failed(const Error& error) const;
 

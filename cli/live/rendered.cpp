@@ -81,7 +81,7 @@ RenderedRecording::Distance RenderedRecording::distance() const noexcept {
 // ==== rendered scene ====
 
 RenderedScene::RenderedScene(const sim::Scene& scene, std::size_t user, std::uint64_t seed, const ChosenDevice& device)
-    : scene_(scene), user_(user), seed_(seed), hand_(device.hand), origin_(device.in_world ? Vec3{} : scene.users[user].start) {}
+    : scene_(scene), user_(user), seed_(seed), hand_(device.hand), frame_(device.frame) {}
 
 Outcome RenderedScene::begin() {
   auto simulation = sim::Simulation::create(scene_, {.seed = seed_, .grip = {}, .channel = {}});
@@ -92,9 +92,8 @@ Outcome RenderedScene::begin() {
 }
 
 tl::expected<Vec3, Failure> RenderedScene::step(const device::ServoTick& tick, TraceFrame& frame) {
-  DeviceSample sample = tick.reading.sample;
-  sample.position = sample.position + origin_;
-  if (const auto stepped = simulation_->step(user_, sample); !stepped) return refuse(stepped.error());
+  if (const auto stepped = simulation_->step(user_, frame_.to_world(tick.reading.sample)); !stepped)
+    return refuse(stepped.error());
   frame = simulation_->frame();
   show();
   return frame.users[user_].force;

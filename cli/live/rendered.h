@@ -27,10 +27,11 @@ class Rendered {
   virtual TraceInfo info() const = 0;
   virtual std::size_t user() const noexcept { return 0; }
 
-  /// The force [N] to render.
+  /// The force [N] to render at the probe, which moves scale() times as far as the device: the device exerts force / scale().
   /// out  frame  all that the trace holds of this tick, but its number, what was exerted, and how the servo kept its time
   /// time at most 1 ms on average; no allocation
   virtual tl::expected<Vec3, Failure> step(const device::ServoTick& tick, TraceFrame& frame) = 0;
+  virtual double scale() const noexcept { return 1; }
   virtual bool is_over() const noexcept { return false; }
 
   virtual ~Rendered() = default;
@@ -95,6 +96,7 @@ class RenderedScene final : public Rendered {
   TraceInfo info() const override { return simulation_->info(); }
   std::size_t user() const noexcept override { return user_; }
   tl::expected<Vec3, Failure> step(const device::ServoTick& tick, TraceFrame& frame) override;
+  double scale() const noexcept override { return frame_.scale; }
 
  private:
   void show() noexcept;
@@ -103,7 +105,7 @@ class RenderedScene final : public Rendered {
   std::size_t user_;
   std::uint64_t seed_;
   VirtualDevice* hand_;
-  Vec3 origin_{};  // [m] of the device's frame in the world
+  DeviceFrame frame_;
   std::optional<sim::Simulation> simulation_;
 };
 

@@ -53,7 +53,6 @@ tl::expected<Body, Failure> make_body(const JoinOptions& options) {
   TACTUS_TRY(body.chosen, open_device(options.device, &*scene, body.user));
   TACTUS_CHECK(check_position(body.chosen.device->capabilities()));
   TACTUS_CHECK(check_force(options.device, body.chosen.device->capabilities()));
-  if (!body.chosen.in_world) body.origin = scene->users[body.user].start;
   return body;
 }
 
@@ -251,8 +250,7 @@ Outcome Visit::wait() {
   if (!tick) return refuse_device(name, tick.error());
   own.tick = *tick;
   if (own.servo->times().ticks == 1) own.begin = tick->due;
-  own.sample = tick->reading.sample;
-  own.sample.position = own.sample.position + own.origin;
+  own.sample = own.chosen.frame.to_world(tick->reading.sample);
   at_end = at_end || tick->reading.state == device::Reading::State::ended;
   return {};
 }
@@ -266,9 +264,10 @@ Outcome Visit::render(std::uint64_t now) {
   const auto delay =
       static_cast<std::uint32_t>((session_.round_trip_shown(now).value_or(0) * sim::kTickRate + 500'000) / 1'000'000);
   own.client->touch(own.user, own.sample, {session_.force_fraction(now), delay});
-  if (const auto exerted = own.servo->exert(own.client->rendered_force(own.user)); !exerted)
+  const Vec3 force = own.client->rendered_force(own.user);
+  if (const auto exerted = own.servo->exert((1 / own.chosen.frame.scale) * force); !exerted)
     return refuse_device(own.chosen.device->capabilities().name, exerted.error());
-  largest_force = std::max(largest_force, norm(own.client->rendered_force(own.user)));
+  largest_force = std::max(largest_force, norm(force) / own.chosen.frame.scale);
   return {};
 }
 
@@ -288,7 +287,7 @@ Outcome Visit::record(std::uint64_t now) {
     const device::ForceGuard* guard = body->servo->guard();
     UserSample& user = frame_.users[0];
     user.device = body->sample;
-    user.force = guard != nullptr ? guard->written() : Vec3{};
+    user.force = guard != nullptr ? body->chosen.frame.scale * guard->written() : Vec3{};
     user.servo = {body->tick.lateness, body->tick.age, body->tick.missed, guard != nullptr ? guard->actions() : 0U};
   }
   trace->offer(frame_);

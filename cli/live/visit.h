@@ -42,7 +42,6 @@ struct Body {
   std::size_t user = 0;
   ChosenDevice chosen;
   std::unique_ptr<device::Servo> servo;  // from the first live tick on
-  Vec3 origin{};                         // [m] of the device's frame in the world
   DeviceSample sample;                   // in the world
   device::ServoTick tick;
   device::Time begin = 0;  // of the first one

@@ -168,10 +168,11 @@ SceneInterest read_interest(TomlReader& in, const toml::table& table) {
 
 SceneDevice read_device(TomlReader& in, const toml::table& table) {
   const std::string path = "user.device";
-  in.allow(table, path, {"max_force", "resolution", "filter", "axes"});
+  in.allow(table, path, {"scale", "max_force", "resolution", "filter", "axes"});
   SceneDevice device;
-  device.max_force = in.number(table, path, "max_force", {0.01, 1000}, device.max_force);
-  device.resolution = in.number(table, path, "resolution", {1e-9, 0.1}, device.resolution);
+  device.scale = in.number(table, path, "scale", {kLeastDeviceScale, kLargestDeviceScale}, device.scale);
+  device.max_force = device.scale * in.number(table, path, "max_force", {0.01, 1000}, device.max_force);
+  device.resolution = device.scale * in.number(table, path, "resolution", {1e-9, 0.1}, device.resolution);
   device.filter = in.whole(table, path, "filter", {1, 1000}, device.filter);
   device.axes = read_axes(in, table, path, "axes", device.axes) & Dof::translation;
   return device;
@@ -224,6 +225,7 @@ SceneUser read_user(TomlReader& in, const toml::table& table, const Scene& scene
   user.start = in.vector(table, path, "start", kPosition);
   user.goal = in.vector(table, path, "goal", kPosition, Vec3{});
   if (const toml::table* device = in.table(table, path, "device")) user.device = read_device(in, *device);
+  user.tremor *= user.device.scale;
   for (const toml::table* phase : in.tables(table, path, "path")) user.path.push_back(read_phase(in, *phase));
   return user;
 }
@@ -385,7 +387,7 @@ void scale_durations(Scene& scene, double factor) noexcept {
 }
 
 void set_tremor(Scene& scene, double rms) noexcept {
-  for (SceneUser& user : scene.users) user.tremor = rms;
+  for (SceneUser& user : scene.users) user.tremor = user.device.scale * rms;
 }
 
 bool sends_loads(const Scene& scene) noexcept {

@@ -22,6 +22,7 @@ namespace tactus::sim {
 
 inline constexpr std::uint32_t kTickRate = 1000;  ///< [Hz] haptic rate of every scene
 inline constexpr double kTick = 1e-3;             ///< [s]
+inline constexpr double kLeastDeviceScale = 1e-3, kLargestDeviceScale = 1e3;
 
 /// A rigid object: a box, or a solid of any shape.
 struct SceneObject {
@@ -91,7 +92,10 @@ struct SceneCompensation {
   double filter = 0.1;  ///< lambda of StiffnessReduction
 };
 
+/// What the probe of a user hangs on. The probe moves `scale` times as far as the device, and the device exerts force / scale: what is touched
+/// feels as stiff as it is. Lengths and forces here are those at the probe.
 struct SceneDevice {
+  double scale = 1;
   double max_force = 3.3;                ///< [N] the rendered force is clipped to it
   double resolution = 0.055e-3;          ///< [m] encoder step
   std::uint32_t filter = 8;              ///< length of the moving average over positions, 1: none
@@ -125,7 +129,7 @@ struct SceneUser {
   std::string name;
   Grip grip = Grip::normal;
   double duration_scale = 1;  ///< times the duration of every phase: 0.5 is twice as fast
-  double tremor = 0;          ///< [m] RMS per axis of the free hand, 8-12 Hz
+  double tremor = 0;          ///< [m] RMS per axis of the free probe, 8-12 Hz
   double variation = 0;       ///< fraction by which hand, speed and targets vary with the seed
   double scatter = 0;         ///< [m] by which targets vary with the seed
   std::uint32_t object = 0;   ///< the object that the user looks at: index over the objects, then the msds, then the deformables
@@ -182,7 +186,7 @@ std::uint64_t fingerprint(const Scene& scene) noexcept;
 
 /// All hands take `factor` times their time, and the scene lasts as much longer or shorter.   pre  factor > 0
 void scale_durations(Scene& scene, double factor) noexcept;
-/// [m] RMS per axis, of all hands.
+/// [m] RMS per axis, of all hands; that of their probes is `scale` times it.
 void set_tremor(Scene& scene, double rms) noexcept;
 
 /// Whether clients need the forces on its objects: they make up for delay, and something can be pushed.

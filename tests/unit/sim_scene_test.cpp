@@ -157,6 +157,24 @@ TEST(Scene, DurationScaleAndTremorAreThoseOfEveryHand) {
   EXPECT_EQ(scene.duration, 0.5);
 }
 
+TEST(Scene, AProbeMovesFartherThanItsDeviceByItsScale) {
+  const std::string head = kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser +
+                           "tremor = 1e-4\n[user.device]\nmax_force = 3\nresolution = 1e-5\n";
+  const Scene plain = parse_scene(head, "t.toml").value();
+  EXPECT_EQ(plain.users[0].device.scale, 1);
+  Scene scaled = parse_scene(head + "scale = 4\n", "t.toml").value();
+  const SceneUser& user = scaled.users[0];
+  EXPECT_EQ(user.device.scale, 4);
+  EXPECT_EQ(user.device.max_force, 4 * plain.users[0].device.max_force);
+  EXPECT_EQ(user.device.resolution, 4 * plain.users[0].device.resolution);
+  EXPECT_EQ(user.tremor, 4 * plain.users[0].tremor);
+  EXPECT_EQ(user.start, plain.users[0].start);
+  set_tremor(scaled, 1e-3);
+  EXPECT_EQ(user.tremor, 4 * 1e-3);
+  for (const char* wrong : {"0", "-1", "1e-4", "1001", "nan"})
+    EXPECT_FALSE(parse_scene(head + "scale = " + wrong + "\n", "t.toml")) << wrong;
+}
+
 TEST(Scene, MissingFileIsAnError) {
   const auto scene = load_scene("no/such/scene.toml");
   ASSERT_FALSE(scene);
