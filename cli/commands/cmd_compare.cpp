@@ -27,7 +27,7 @@ struct CompareOptions {
 };
 
 /// What is compared goes to the figure, too.
-void add(const TraceFrame& truth, const ShownByReplica& shown, Report& report, std::optional<ErrorFigure>& figure) {
+void judge_tick(const TraceFrame& truth, const ShownByReplica& shown, Report& report, std::optional<ErrorFigure>& figure) {
   add_errors(truth, shown, report);
   if (!figure) return;
   figure->add(truth, shown.poses);
@@ -68,7 +68,7 @@ Outcome compare_all(Side& truth, Side& replica, const ContactDeclarations& conta
     if (has_replica) shown.take(replica.frame);
     if (has_truth && has_replica) {
       contacts.apply(truth.frame);
-      report.timings[0].times.measure([&] { return add(truth.frame, shown, report, figure), true; });
+      report.timings[0].times.measure([&] { return judge_tick(truth.frame, shown, report, figure), true; });
       report.ticks.add(replica.frame.tick);
       progress.update(report.ticks.count());
     } else {
@@ -99,7 +99,7 @@ tl::expected<Side, Failure> open(const std::string& path, const CompareOptions& 
   return Side{path, std::move(*reader)};
 }
 
-Outcome run(const CompareOptions& options) {
+Outcome run_compare(const CompareOptions& options) {
   TACTUS_CHECK(check_plot_option(options.plot, options.common, {options.truth, options.replica}));
   TACTUS_TRY(auto truth, open(options.truth, options));
   TACTUS_TRY(auto replica, open(options.replica, options));
@@ -153,7 +153,7 @@ void setup_compare(Command& app, Action& action) {
       "Examples:\n"
       "  tactus compare push.mcap replica.mcap -p 8% --visual 6mm,2deg --plot errors.svg\n"
       "  tactus compare server.mcap client.mcap -p 4%");
-  on_chosen<CompareOptions>(command, action, options, run);
+  on_chosen<CompareOptions>(command, action, options, run_compare);
 }
 
 }  // namespace tactus::cli

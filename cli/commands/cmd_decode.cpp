@@ -132,7 +132,7 @@ Outcome decode_all(Player& player, TraceWriter& writer, const TraceInfo& info, c
   return {};
 }
 
-Outcome run(const DecodeOptions& options) {
+Outcome run_decode(const DecodeOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   TACTUS_TRY(const auto bytes, read_file(options.input));
   const std::span file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
@@ -203,7 +203,7 @@ void setup_decode(Command& app, Action& action) {
       "Examples:\n"
       "  tactus decode push.tct -o replica.mcap --like push.mcap\n"
       "  tactus decode thesis.tct -o smooth.mcap --interpolate");
-  on_chosen<DecodeOptions>(command, action, options, run);
+  on_chosen<DecodeOptions>(command, action, options, run_decode);
 }
 
 }  // namespace tactus::cli

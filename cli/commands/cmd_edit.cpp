@@ -63,7 +63,7 @@ Outcome copy(TraceReader& reader, TraceWriter& writer, const CutOptions& options
   }
 }
 
-Outcome run(const CutOptions& options) {
+Outcome run_cut(const CutOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   if (options.to <= options.from) return refuse_arguments("--to: nothing lies between it and --from", "Give a later --to.");
   auto reader = open_trace(options.input, options.common.progress());
@@ -104,7 +104,7 @@ void setup_cut(Command& app, Action& action) {
   command.footer(
       "Times are those of the trace; they stay what they are unless --rebase is given.\n"
       "Example:\n  tactus cut push.mcap --from 2s --to 3.5s -o contact.mcap");
-  on_chosen<CutOptions>(command, action, options, run);
+  on_chosen<CutOptions>(command, action, options, run_cut);
 }
 
 // ==== cmd merge ====
@@ -206,7 +206,7 @@ Outcome merge(std::vector<Part>& parts, TraceWriter& writer, const MergeOptions&
   return {};
 }
 
-Outcome run(const MergeOptions& options) {
+Outcome run_merge(const MergeOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   if (options.inputs.size() < 2) return refuse_arguments("TRACES: one trace alone is merged already", "Give two or more.");
   std::vector<Part> parts;
@@ -251,7 +251,7 @@ void setup_merge(Command& app, Action& action) {
       "Names that occur twice get numbers, ticks that are not in all traces are left out; warnings say so. Scenes and bounds\n"
       "are not carried over.\n"
       "Example:\n  tactus merge objects.mcap hand.mcap -o all.mcap");
-  on_chosen<MergeOptions>(command, action, options, run);
+  on_chosen<MergeOptions>(command, action, options, run_merge);
 }
 
 // ==== cmd resample ====
@@ -293,7 +293,7 @@ Outcome resample(TraceReader& reader, Resampler& resampler, TraceWriter& writer,
   }
 }
 
-Outcome run(const ResampleOptions& options) {
+Outcome run_resample(const ResampleOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   auto reader = open_trace(options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
@@ -336,7 +336,7 @@ void setup_resample(Command& app, Action& action) {
       "Positions, velocities and forces follow straight lines between samples, rotations arcs; contacts, buttons and shapes\n"
       "are those of the sample before. Nothing is filtered.\n"
       "Example:\n  tactus resample handwriting.mcap --rate 1000 -o at-1kHz.mcap");
-  on_chosen<ResampleOptions>(command, action, options, run);
+  on_chosen<ResampleOptions>(command, action, options, run_resample);
 }
 
 }  // namespace tactus::cli

@@ -174,7 +174,7 @@ Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, con
   return {};
 }
 
-Outcome run(const EncodeOptions& options) {
+Outcome run_encode(const EncodeOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   std::optional<RereadableInput> again;
   if (options.clusters > 0) {
@@ -256,7 +256,7 @@ void setup_encode(Command& app, Action& action) {
       "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off --tune gravity=9.81,friction=0.25\n"
       "  tactus encode membrane.mcap -o membrane.tct -p 2.5% --deformable-visual 0.25mm --basis 48 --plot membrane.svg\n"
       "  tactus encode dance.mcap -o dance.tct --haptic off --deformable-visual 1mm --tune clusters=40");
-  on_chosen<EncodeOptions>(command, action, options, run);
+  on_chosen<EncodeOptions>(command, action, options, run_encode);
 }
 
 }  // namespace tactus::cli

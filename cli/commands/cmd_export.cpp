@@ -26,7 +26,7 @@ struct ExportOptions {
   CommonOptions common;
 };
 
-Outcome run(const ExportOptions& options) {
+Outcome run_export(const ExportOptions& options) {
   auto reader = open_trace(options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
@@ -60,7 +60,7 @@ void setup_export(Command& app, Action& action) {
       "know\n"
       "nothing else.\n"
       "Example:\n  tactus export csv push.mcap -o push.csv");
-  on_chosen<ExportOptions>(command, action, options, run);
+  on_chosen<ExportOptions>(command, action, options, run_export);
 }
 
 // ==== cmd export foxglove ====
@@ -136,7 +136,7 @@ Outcome write_all(MotionSource& source, FoxgloveWriter& writer, const ExportFoxg
   return {};
 }
 
-Outcome run(const ExportFoxgloveOptions& options) {
+Outcome run_export_foxglove(const ExportFoxgloveOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   TACTUS_TRY(auto source, MotionSource::open(options.input, options.common.progress()));
   TACTUS_TRY(auto shapes, shapes_of(options, source.info()));
@@ -189,7 +189,7 @@ void setup_export_foxglove(Command& group, Action& action) {
       "Examples:\n"
       "  tactus export foxglove membrane.mcap -o membrane-3d.mcap --layout membrane.json\n"
       "  tactus export foxglove push.tct --scene push-1dof -o push-3d.mcap");
-  on_chosen<ExportFoxgloveOptions>(command, action, options, run);
+  on_chosen<ExportFoxgloveOptions>(command, action, options, run_export_foxglove);
 }
 
 }  // namespace tactus::cli

@@ -31,7 +31,7 @@ tl::expected<MotionFigure, Failure> read_all(MotionSource& source, const ExportF
   return figure;
 }
 
-Outcome run(const ExportFigureOptions& options) {
+Outcome run_export_figure(const ExportFigureOptions& options) {
   TACTUS_TRY(auto source, MotionSource::open(options.input, options.common.progress()));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
   TACTUS_TRY(const auto stream, output.open());
@@ -63,7 +63,7 @@ void setup_export_figure(Command& group, Action& action) {
       "Examples:\n"
       "  tactus export figure push.mcap -o push.json\n"
       "  tactus plot push.json -o push.pdf");
-  on_chosen<ExportFigureOptions>(command, action, options, run);
+  on_chosen<ExportFigureOptions>(command, action, options, run_export_figure);
 }
 
 }  // namespace tactus::cli

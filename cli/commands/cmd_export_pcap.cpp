@@ -61,7 +61,7 @@ Result<std::unique_ptr<sim::SessionNetwork>> connect(const TraceInfo& info, cons
 }
 
 /// What the device of a recorded user feels: the proxy is where the recorded force pulls it.
-std::optional<DeviceContact> contact_of(const UserSample& user, const TraceFrame& frame) {
+std::optional<DeviceContact> recorded_contact(const UserSample& user, const TraceFrame& frame) {
   if (const auto& surface = user.surface_contact) return DeviceContact{surface->proxy, surface->stiffness};
   const Contact& contact = user.contact;
   if (contact.kind == ContactKind::none || contact.object >= frame.objects.size() || contact.stiffness <= 0) return std::nullopt;
@@ -73,7 +73,7 @@ Result<void> play_frame(Playback& play, std::int64_t tick) {
   const TraceFrame& frame = play.frame;
   for (std::size_t i = 0; i < play.devices.size(); ++i) {
     play.devices[i] = frame.users[i].device;
-    play.contacts[i] = contact_of(frame.users[i], frame);
+    play.contacts[i] = recorded_contact(frame.users[i], frame);
   }
   TACTUS_CHECK(play.network->to_server(tick, play.devices, play.contacts));
   TACTUS_CHECK(play.network->to_clients(tick, play.truth.of(frame)));
@@ -103,7 +103,7 @@ Outcome play_all(Playback& play, const ExportPcapOptions& options, TickSpan& tic
 
 Json count_json(const SessionCapture::Count& count) { return {{"datagrams", count.datagrams}, {"bytes", count.bytes}}; }
 
-Value value_of(const ExportPcapOptions& options, const Playback& play, const SessionCapture& capture, const TickSpan& ticks) {
+Value pcap_value(const ExportPcapOptions& options, const Playback& play, const SessionCapture& capture, const TickSpan& ticks) {
   const TraceInfo& info = play.reader.info();
   const double seconds = static_cast<double>(ticks.length()) / info.tick_rate;
   const bool participants = are_participants(options, info);
@@ -131,7 +131,7 @@ Value value_of(const ExportPcapOptions& options, const Playback& play, const Ses
   return out;
 }
 
-Outcome run(const ExportPcapOptions& options) {
+Outcome run_export_pcap(const ExportPcapOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   auto reader = open_trace(options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
@@ -157,7 +157,7 @@ Outcome run(const ExportPcapOptions& options) {
   TACTUS_CHECK(play_all(play, options, ticks));
   TACTUS_CHECK(check_ending(options.input, play.reader, ticks.count()));
   TACTUS_CHECK(capture->keep());
-  print(value_of(options, play, *capture, ticks), "pcap", options.common, options.output == "-" ? stderr : stdout);
+  print(pcap_value(options, play, *capture, ticks), "pcap", options.common, options.output == "-" ? stderr : stdout);
   return {};
 }
 
@@ -192,7 +192,7 @@ void setup_export_pcap(Command& group, Action& action) {
       "Time stamps are the server's clock in virtual time: datagrams of an event have the same. The same seed gives the same "
       "bytes.\n" +
       std::string(link_help()));
-  on_chosen<ExportPcapOptions>(command, action, options, run);
+  on_chosen<ExportPcapOptions>(command, action, options, run_export_pcap);
 }
 
 }  // namespace tactus::cli

@@ -26,7 +26,7 @@ Outcome write_pages(const CommandText& command, const std::filesystem::path& fol
   return {};
 }
 
-Outcome run(const Command& app, const HelpOptions& options) {
+Outcome run_help(const Command& app, const HelpOptions& options) {
   if (!options.man_pages.empty()) return write_pages(app.text(), options.man_pages);
   if (!options.words.empty() && is_script(options.words.front())) {
     std::vector<std::string> words(options.words.begin() + 1, options.words.end());
@@ -51,7 +51,7 @@ void setup_help(Command& app, Action& action) {
       "Examples:\n"
       "  tactus help encode\n"
       "  tactus help import csv");
-  command.on_chosen([&action, &app, options] { action = [&app, options] { return run(app, *options); }; });
+  command.on_chosen([&action, &app, options] { action = [&app, options] { return run_help(app, *options); }; });
 }
 
 // ==== cmd completion ====

@@ -268,7 +268,7 @@ void list_presets() {
   for (const CsvPreset& preset : csv_presets()) fmt::print("{:<24} {}\n", preset.name, preset.description);
 }
 
-Outcome run(const ImportOptions& options) {
+Outcome run_import(const ImportOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   if (options.list_presets) {
     list_presets();
@@ -412,7 +412,7 @@ void setup_import(Command& app, Action& action) {
   command.on_chosen([&action, options, list, input, output] {
     if (list->count() == 0 && input->count() == 0) miss_option("FILE");
     if (list->count() == 0 && output->count() == 0) miss_option("--output");
-    action = [options] { return run(*options); };
+    action = [options] { return run_import(*options); };
   });
 }
 

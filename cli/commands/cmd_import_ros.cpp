@@ -27,7 +27,7 @@ Outcome copy(TraceReader& reader, TraceWriter& writer, const ImportRosOptions& o
   }
 }
 
-Outcome run(const ImportRosOptions& options) {
+Outcome run_import_ros(const ImportRosOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   TACTUS_TRY(auto reader, open_trace(options.input, options.input, options.common.progress(), options.read));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
@@ -80,7 +80,7 @@ void setup_import_ros(Command& group, Action& action) {
       "  tactus import ros grasp.mcap -o grasp-trace.mcap\n"
       "  tactus import ros grasp.mcap --topic /cup/pose --stamps header -o cup.mcap\n"
       "Every other command reads a recording with the defaults.");
-  on_chosen<ImportRosOptions>(command, action, options, run);
+  on_chosen<ImportRosOptions>(command, action, options, run_import_ros);
 }
 
 }  // namespace tactus::cli

@@ -224,7 +224,7 @@ Outcome info_scene(const InfoOptions& options) {
 }
 #endif
 
-Outcome run(const InfoOptions& options) {
+Outcome run_info(const InfoOptions& options) {
 #ifdef TACTUS_HAS_SIM
   if (options.input.ends_with(".toml")) return info_scene(options);
 #endif
@@ -251,7 +251,7 @@ void setup_info(Command& app, Action& action) {
   command.add_flag("--packets", options->packets, "List every packet of a stream");
   command.add_flag("--json", options->common.json, "As JSON");
   command.footer("Example:\n  tactus info push.tct --packets");
-  on_chosen<InfoOptions>(command, action, options, run);
+  on_chosen<InfoOptions>(command, action, options, run_info);
 }
 
 }  // namespace tactus::cli

@@ -121,7 +121,7 @@ Outcome show(const KeyOptions& options) {
   return {};
 }
 
-Outcome run(const KeyOptions& options) {
+Outcome run_key(const KeyOptions& options) {
   if (options.list.empty()) return make_one(options);
   if (!options.add.empty()) return add(options);
   return options.remove.empty() ? show(options) : remove(options);
@@ -168,7 +168,7 @@ void setup_key(Command& app, Action& action) {
       "One key for all, who are equal then:\n"
       "  tactus key -o lab.key --name lab\n"
       "  tactus serve rotate-push-lift --listen 192.0.2.1:7447 --key lab.key");
-  on_chosen<KeyOptions>(command, action, options, run);
+  on_chosen<KeyOptions>(command, action, options, run_key);
 }
 
 }  // namespace tactus::cli

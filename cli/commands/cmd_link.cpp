@@ -140,7 +140,7 @@ Json direction_json(const sim::LinkCounters& c) {
           {"reordered", c.reordered}};
 }
 
-Value value_of(const ForwardOptions& options, const Forwarder& forwarder, double seconds) {
+Value link_value(const ForwardOptions& options, const Forwarder& forwarder, double seconds) {
   Json out{{"schema", "tactus.link/1"}, {"listen", options.listen}, {"to", options.to}, {"seconds", seconds}};
   out["clients"] = Json::array();
   for (const Path& path : forwarder.paths())
@@ -159,7 +159,7 @@ Value value_of(const ForwardOptions& options, const Forwarder& forwarder, double
   return out;
 }
 
-Outcome run(const ForwardOptions& options) {
+Outcome run_link(const ForwardOptions& options) {
   TACTUS_TRY(const net::Address listen, loopback_address("--listen", options.listen));
   TACTUS_TRY(const net::Address to, loopback_address("--to", options.to));
   auto own = net::UdpSocket::bind(listen);
@@ -173,7 +173,7 @@ Outcome run(const ForwardOptions& options) {
   constexpr Microseconds kLook = 100'000;  // for a signal that came just before waiting
   const Microseconds end = options.duration > 0 ? std::llround(1e6 * options.duration) : INT64_MAX;
   while (StopOnSignal::caught() == 0 && forwarder.now() < end) forwarder.step(std::min(end, forwarder.now() + kLook));
-  print(value_of(shown, forwarder, 1e-6 * static_cast<double>(forwarder.now())), "link", options.common);
+  print(link_value(shown, forwarder, 1e-6 * static_cast<double>(forwarder.now())), "link", options.common);
   return {};
 }
 
@@ -192,7 +192,7 @@ void setup_link(Command& app, Action& action) {
                  "\nEach client meets a network of its own: client i, from 0, has seed + 2 i down and seed + 2 i + 1 up.\n\n"
                  "Example:\n"
                  "  tactus link --listen 4001 --to 4000 --link delay=20ms,jitter=5ms,loss=1%,burst=5");
-  on_chosen<ForwardOptions>(command, action, options, run);
+  on_chosen<ForwardOptions>(command, action, options, run_link);
 }
 
 }  // namespace tactus::cli

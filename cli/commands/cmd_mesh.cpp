@@ -73,7 +73,7 @@ void scale(std::vector<Vec3>& points, double unit) {
   for (Vec3& p : points) p = unit * p;
 }
 
-Outcome make_slab(const MeshOptions& options, TetMeshReport& report) {
+Outcome mesh_slab(const MeshOptions& options, TetMeshReport& report) {
   std::array<std::uint32_t, 3> cells{};
   const char *at = options.slab.data(), *const end = at + options.slab.size();
   bool good = true;
@@ -171,7 +171,7 @@ Outcome write_mesh(const MeshOptions& options, const sim::TetMesh& mesh) {
   return ele_file.keep();
 }
 
-Value value_of(const MeshOptions& options, const TetMeshReport& report) {
+Value mesh_value(const MeshOptions& options, const TetMeshReport& report) {
   const sim::TetQuality q = quality(report.mesh);
   const sim::TetSurface outside = surface(report.mesh);
   const sim::Bounds box = sim::bounds(report.mesh.vertices);
@@ -195,12 +195,12 @@ Value value_of(const MeshOptions& options, const TetMeshReport& report) {
   return out;
 }
 
-Outcome run(const MeshOptions& options) {
+Outcome run_mesh(const MeshOptions& options) {
   if (!options.output.ends_with(".node") && !options.output.ends_with(".msh"))
     return refuse_arguments(options.output + ": not the name of a mesh",
                             "Give -o NAME.node (with NAME.ele beside it) or -o NAME.msh.");
   TetMeshReport report;
-  TACTUS_CHECK(!options.slab.empty()        ? make_slab(options, report)
+  TACTUS_CHECK(!options.slab.empty()        ? mesh_slab(options, report)
                : is_tet_file(options.input) ? read_tets(options, report)
                                             : fill_surface(options, report));
   if (auto checked = report.measure("check", [&] { return check(report.mesh); }); !checked) {
@@ -208,7 +208,7 @@ Outcome run(const MeshOptions& options) {
     return refuse(checked.error());
   }
   TACTUS_CHECK(report.measure("write", [&] { return write_mesh(options, report.mesh); }));
-  print(value_of(options, report), "mesh", options.common);
+  print(mesh_value(options, report), "mesh", options.common);
   return {};
 }
 
@@ -264,7 +264,7 @@ void setup_mesh(Command& app, Action& action) {
       "  tactus mesh --slab 16x20x1 --cell 10mm -o membrane.msh");
   command.on_chosen([&action, options, input, slab] {
     if (input->count() + slab->count() == 0) miss_option("FILE or --slab");
-    action = [options] { return run(*options); };
+    action = [options] { return run_mesh(*options); };
   });
 }
 

@@ -122,7 +122,7 @@ std::string name_mistake(const std::string& name) {
   return fmt::format("'{}': a name has 1 to 255 bytes of UTF-8 without '/' and control characters", shown(name));
 }
 
-Outcome run(const ImportMeshOptions& options) {
+Outcome run_import_mesh(const ImportMeshOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   TACTUS_CHECK(check_folder(options.input));
   const bool is_gltf = options.input.ends_with(".glb") || options.input.ends_with(".gltf");
@@ -195,7 +195,7 @@ void setup_import_mesh(Command& group, Action& action) {
       "  tactus import mesh horse/ --rate 30 --length-unit 1mm -o horse.mcap\n"
       "  tactus import mesh shapes/ --period 17ms -o membrane.mcap\n"
       "  tactus import mesh clip.glb --node Hand --rate 120 -o hand.mcap");
-  on_chosen<ImportMeshOptions>(command, action, options, run);
+  on_chosen<ImportMeshOptions>(command, action, options, run_import_mesh);
 }
 
 // ==== cmd export mesh ====
@@ -233,7 +233,7 @@ tl::expected<std::size_t, Failure> find_mesh(const ExportMeshOptions& options, c
   return static_cast<std::size_t>(found - info.meshes.begin());
 }
 
-Outcome run(const ExportMeshOptions& options) {
+Outcome run_export_mesh(const ExportMeshOptions& options) {
   auto reader = open_trace(options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   TACTUS_TRY(const auto index, find_mesh(options, reader->info()));
@@ -287,7 +287,7 @@ void setup_export_mesh(Command& group, Action& action) {
   command.add_option("--format", options->format, "Kind of files: obj or ply [obj]")->one_of({"obj", "ply"})->type_name("");
   add_report_options(command, options->common);
   command.footer("Example:\n  tactus export mesh replica.mcap --format ply -o shapes");
-  on_chosen<ExportMeshOptions>(command, action, options, run);
+  on_chosen<ExportMeshOptions>(command, action, options, run_export_mesh);
 }
 
 }  // namespace tactus::cli

@@ -28,7 +28,7 @@ struct RecoverOptions {
 std::string seconds(std::uint64_t time) { return fmt::format("{:.3f} s", 1e-9 * static_cast<double>(time)); }
 
 /// "byte 1234: a check value does not match (R-TRC-6), 51200 bytes, log time 1.000 s to 1.999 s"
-std::string text_of(const ReadLoss& loss) {
+std::string loss_text(const ReadLoss& loss) {
   std::string text = loss.file.empty() ? "" : shown(loss.file) + ", ";
   text += fmt::format("byte {}: {} ({})", loss.cause.bit_offset / 8, describe(loss.cause), loss.cause.rule);
   if (loss.bytes > 0) text += fmt::format("; {} bytes", loss.bytes);
@@ -44,7 +44,7 @@ void add_losses(const std::vector<ReadLoss>& losses, Report& report) {
   std::uint64_t bytes = 0;
   for (std::size_t i = 0; i < losses.size(); ++i) {
     bytes += losses[i].bytes;
-    if (i < kMost) report.warnings.push_back("lost: " + text_of(losses[i]));
+    if (i < kMost) report.warnings.push_back("lost: " + loss_text(losses[i]));
   }
   if (losses.size() > kMost)
     report.warnings.push_back(fmt::format("lost: and {} more places; {} bytes in all", losses.size() - kMost, bytes));
@@ -149,7 +149,7 @@ Outcome recover_trace(const RecoverOptions& options, TraceReader& reader) {
   const std::vector<ReadLoss>& losses = reader.losses();
   if (report.ticks.count() == 0) {
     if (rescue.damage) return refuse(options.input, *rescue.damage);
-    const std::string why = losses.empty() ? "" : "; " + text_of(losses.front());
+    const std::string why = losses.empty() ? "" : "; " + loss_text(losses.front());
     return refuse(shown_path(options.input) + ": no whole tick is in it" + why, "Nothing can be recovered.");
   }
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
@@ -236,7 +236,7 @@ Outcome recover_recording(const RecoverOptions& options, mcap::Reader& reader) {
   TACTUS_TRY(const Copied copied, copy_messages(reader, *writer, options));
   const std::vector<ReadLoss>& losses = reader.losses();
   if (copied.messages == 0) {
-    const std::string why = losses.empty() ? "" : "; " + text_of(losses.front());
+    const std::string why = losses.empty() ? "" : "; " + loss_text(losses.front());
     return refuse(shown_path(options.input) + ": no whole message is in it" + why, "Nothing can be recovered.");
   }
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
@@ -266,7 +266,7 @@ bool is_trace(mcap::Reader& reader) {
   }
 }
 
-Outcome run(const RecoverOptions& given) {
+Outcome run_recover(const RecoverOptions& given) {
   RecoverOptions options = given;
   TACTUS_TRY(const auto input, RereadableInput::open(options.input));
   options.readable = input.path();
@@ -299,7 +299,7 @@ void setup_recover(Command& app, Action& action) {
       "Writes all that can be read, with an index, reads it back and says what is lost. Of a trace that is ticks; of a\n"
       "recording of another program all messages of all topics, as they are.\n"
       "Example:\n  tactus recover crashed.mcap -o rescued.mcap");
-  on_chosen<RecoverOptions>(command, action, options, run);
+  on_chosen<RecoverOptions>(command, action, options, run_recover);
 }
 
 }  // namespace tactus::cli

@@ -302,7 +302,7 @@ Outcome check(const ServeOptions& options, const SessionServerOptions& settings,
   return {};
 }
 
-Outcome run(const ServeOptions& typed) {
+Outcome run_serve(const ServeOptions& typed) {
   ServeOptions options = typed;
   TACTUS_TRY(const net::Address listen, session_address("--listen", options.listen, options.key));
   TACTUS_TRY(const auto world, make_world(options));
@@ -415,7 +415,7 @@ void setup_serve(Command& app, Action& action) {
       "lab.keys may change while it runs: a user that is removed from it has to go within 2 s, at once after kill -HUP.\n"
       "A file that is broken changes nothing but a line of the log. What one sender sends beyond 5000 datagrams per second is "
       "dropped.");
-  on_chosen<ServeOptions>(command, action, options, run);
+  on_chosen<ServeOptions>(command, action, options, run_serve);
 }
 
 }  // namespace tactus::cli

@@ -32,18 +32,18 @@ struct TolerableOptions {
   CommonOptions common;
 };
 
-const std::string& name_of(const TraceInfo& info, const Pair& pair) {
+const std::string& object_name(const TraceInfo& info, const Pair& pair) {
   return pair.is_mesh ? info.meshes[pair.object].name : info.objects[pair.object].name;
 }
 
 double seconds(const TraceInfo& info, std::uint64_t ticks) { return static_cast<double>(ticks) / info.tick_rate; }
 
-Value value_of(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance, bool is_scene) {
+Value tolerable_value(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance, bool is_scene) {
   Json out{
       {"schema", "tactus.tolerable/1"}, {"trace", options.input}, {"weber_fraction", options.weber}, {"touches", Json::array()}};
   for (const auto& [pair, touch] : tolerance.touches()) {
     Json entry{{"user", info.users[pair.user].name},
-               {pair.is_mesh ? "mesh" : "object", name_of(info, pair)},
+               {pair.is_mesh ? "mesh" : "object", object_name(info, pair)},
                {"seconds", seconds(info, touch.ticks())},
                {"pressing_seconds", seconds(info, touch.pressing())},
                {"follows", touch.follows()}};
@@ -67,7 +67,7 @@ Figure fraction_figure(const TolerableOptions& options, const TraceInfo& info, c
   Panel panel{"fraction of the time in contact [%]"};
   for (const auto& [pair, touch] : tolerance.touches()) {
     Panel::Line& line =
-        panel.lines.emplace_back(Panel::Line{fmt::format("{}, {}", info.users[pair.user].name, name_of(info, pair)), {}});
+        panel.lines.emplace_back(Panel::Line{fmt::format("{}, {}", info.users[pair.user].name, object_name(info, pair)), {}});
     const double pressing =
         100.0 * static_cast<double>(touch.pressing()) / static_cast<double>(std::max<std::uint64_t>(touch.ticks(), 1));
     for (int step = 1; step < kSteps; ++step) {
@@ -101,7 +101,7 @@ Outcome report(const TolerableOptions& options, const TraceInfo& info, const Del
   if (tolerance.touches().empty())
     return refuse(shown_path(options.input) + ": nobody touches anything", "Give a recording or a scene with contacts.");
   TACTUS_CHECK(draw(options.plot, fraction_figure(options, info, tolerance), options.common));
-  print(value_of(options, info, tolerance, is_scene), "tolerable", options.common);
+  print(tolerable_value(options, info, tolerance, is_scene), "tolerable", options.common);
   return {};
 }
 
@@ -120,7 +120,7 @@ Outcome run_scene(const TolerableOptions& options) {
 }
 #endif
 
-Outcome run(const TolerableOptions& options) {
+Outcome run_tolerable(const TolerableOptions& options) {
   TACTUS_CHECK(check_plot_option(options.plot, options.common, {options.input}));
 #ifdef TACTUS_HAS_SIM
   if (TolerableScene::is_meant(options.input)) return run_scene(options);
@@ -160,7 +160,7 @@ void setup_tolerable(Command& app, Action& action) {
       "the\n"
       "device's displacement, and tolerates as much more; a recording does not tell which fraction (eq. 4.54).\n"
       "Examples:\n  tactus sim push-1dof -o push.mcap && tactus tolerable push.mcap\n  tactus tolerable membrane");
-  on_chosen<TolerableOptions>(command, action, options, run);
+  on_chosen<TolerableOptions>(command, action, options, run_tolerable);
 }
 
 }  // namespace tactus::cli

@@ -13,6 +13,7 @@
 #include <tactus/thesis/if_built.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
+#include "cli/report/json.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
 #include "cli/viewer/columns.h"
@@ -23,8 +24,6 @@
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kMostPage = 96U << 20;              // [bytes] of data, before base64
 constexpr std::int64_t kMostTicks = std::int64_t{1} << 32;  // of a stream
@@ -145,7 +144,7 @@ tl::expected<Json, Failure> page_data(const ViewOptions& options, const std::str
   return data;
 }
 
-Outcome run(const ViewOptions& given) {
+Outcome run_view(const ViewOptions& given) {
   ViewOptions options = given;
   if (options.output.empty() && options.input == "-")
     return refuse_arguments("-o is missing: a stream from standard input gives the page no name", "Name the page with -o.");
@@ -189,7 +188,7 @@ void setup_view(Command& app, Action& action) {
       "look like:\n"
       "without a truth or a scene they are drawn as axes.\n"
       "Example:\n  tactus view push.tct --truth push.mcap -o push.html");
-  on_chosen<ViewOptions>(command, action, options, run);
+  on_chosen<ViewOptions>(command, action, options, run_view);
 }
 
 }  // namespace tactus::cli

@@ -7,17 +7,15 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include <tactus/sim/deformable/stiffness_map.h>
 #include <tactus/trace/csv_reader.h>
 #include "cli/figure/figure.h"
+#include "cli/report/json.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// A surface and its stiffness; null: the vertex is fixed.
 Json figure_of(const std::string& object, const sim::StiffnessMap& map) {

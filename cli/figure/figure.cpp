@@ -3,16 +3,14 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include <tactus/base/shown.h>
 #include "cli/commands/commands.h"
+#include "cli/report/json.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string ending_of(const std::string& path) { return std::filesystem::path(path).extension().string(); }
 

@@ -9,7 +9,6 @@
 #include <boost/system/system_error.hpp>
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "cli/live/live_report.h"
 #include "cli/observe/observed_stream.h"
 #include "cli/observe/web_server.h"
+#include "cli/report/json.h"
 #include "cli/viewer/page.h"
 #include "cli/viewer/shapes.h"
 
@@ -24,7 +24,6 @@ namespace tactus::cli {
 namespace {
 
 namespace asio = boost::asio;
-using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::milliseconds kSpacing(33);  // of batches
 constexpr int kFarewells = 50;                     // times that an end waits for observers to hear it

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cli/report/json.h"
 #include "cli/viewer/page.h"
 
 namespace tactus::cli {
@@ -90,8 +91,6 @@ const ObservedTick* TickQueue::front() const noexcept {
 void TickQueue::pop() noexcept { taken_.store(taken_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
 
 // ==== observed stream ====
-
-using Json = nlohmann::ordered_json;
 
 Result<std::unique_ptr<ObservedStream>> ObservedStream::create(const ObservedScene& scene, const ObservedTick& first) {
   SenderOptions options = scene.sender;
