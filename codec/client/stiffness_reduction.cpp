@@ -16,7 +16,8 @@ StiffnessReduction::StiffnessReduction(const Options& options)
 
 Result<StiffnessReduction> StiffnessReduction::create(const Options& options) try {
   const bool has_delay = options.most_delay >= 1 && options.most_delay <= kMostDelay;
-  if (!has_delay || !(options.filter > 0 && options.filter <= 1)) return fail(Errc::invalid_argument, "R-API-4");
+  const double filter = options.filter.value_or(1);
+  if (!has_delay || !(filter > 0 && filter <= 1)) return fail(Errc::invalid_argument, "R-API-4");
   return StiffnessReduction(options);
 } catch (const std::bad_alloc&) {
   return out_of_memory();
@@ -36,8 +37,9 @@ Vec3 StiffnessReduction::displacement(std::uint32_t round_trip) const noexcept {
   return position(0) - position(back);
 }
 
-double StiffnessReduction::filtered(double wanted) noexcept {
-  mean_ = is_touching_ ? filter_ * wanted + (1 - filter_) * mean_ : wanted;
+double StiffnessReduction::filtered(double wanted, double usual) noexcept {
+  const double lambda = filter_.value_or(usual);
+  mean_ = is_touching_ ? lambda * wanted + (1 - lambda) * mean_ : wanted;
   is_touching_ = true;
   return mean_;
 }
@@ -47,7 +49,7 @@ double StiffnessReduction::reduced(const DeformableTouch& touch, std::uint32_t r
   const double stretch = -dot(touch.stretch, touch.normal), inwards = -dot(displacement(round_trip), touch.normal);
   double wanted = k;
   if (inwards > 0) wanted = inwards < stretch ? k * (1 - follows * inwards / stretch) : k * (1 - follows);
-  return filtered(wanted);
+  return filtered(wanted, kYieldingFilter);
 }
 
 /// 4.27; without a hold the object can go anywhere.
@@ -59,12 +61,13 @@ static double blending(const Vec3& hold, const Vec3& normal) noexcept {
 
 double StiffnessReduction::reduced(const RigidTouch& touch, std::uint32_t round_trip) noexcept {
   const double k = touch.coupling, stretch = norm(touch.stretch);
-  if (!(stretch > 0)) return filtered(k);
+  const double usual = norm(touch.others) > 0 ? kSharedFilter : kRigidFilter;
+  if (!(stretch > 0)) return filtered(k, usual);
   const Vec3 push = (1 / stretch) * touch.stretch;
   const double resists = touch.moves ? -dot(touch.external, push) : norm(touch.hold);
   const double due = std::max(0.0, resists - dot(touch.others, push));
   const double behind = blending(touch.hold, touch.normal) * std::min(dot(displacement(round_trip), push), stretch - due / k);
-  return filtered(behind > 0 ? k * due / (due + k * behind) : k);
+  return filtered(behind > 0 ? k * due / (due + k * behind) : k, usual);
 }
 
 }  // namespace tactus

@@ -29,6 +29,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <tactus/base/geometry.h>
@@ -42,10 +43,13 @@ constexpr double followed_fraction(double object, double coupling) noexcept { re
 class StiffnessReduction {
  public:
   static constexpr std::uint32_t kMostDelay = 10'000;  ///< [ticks]
+  /// Lambda of what yields, of rigid objects, and of those that others push, too: two hands side by side swing at one object the more, the
+  /// faster their stiffness follows. 0.01 of thesis 4.2.3.4 lags behind a press of 0.5 Hz. reports/delay
+  static constexpr double kYieldingFilter = 0.1, kRigidFilter = 0.07, kSharedFilter = 0.03;
 
   struct Options {
     std::uint32_t most_delay = 1000;  ///< [ticks] longest round trip that is made up for, 1 to kMostDelay
-    double filter = 0.1;              ///< lambda per tick, above 0 to 1; 0.01 of thesis 4.2.3.4 lags behind a press of 0.5 Hz
+    std::optional<double> filter{};   ///< lambda per tick, above 0 to 1; none: by what is touched, below
   };
   struct DeformableTouch {
     Vec3 stretch;                 ///< [m] from the proxy on the surface to the device
@@ -80,9 +84,9 @@ class StiffnessReduction {
  private:
   explicit StiffnessReduction(const Options& options);
   Vec3 displacement(std::uint32_t round_trip) const noexcept;
-  double filtered(double wanted) noexcept;
+  double filtered(double wanted, double usual) noexcept;
 
-  double filter_;
+  std::optional<double> filter_;
   std::vector<Vec3> path_;  // ring
   std::size_t next_ = 0, known_ = 0;
   double mean_ = 0;  // [N/m]

@@ -12,7 +12,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from common import program, table  # noqa: E402
 
 OBJECTS = [(350, 2, 0.1), (50, 1, 0.02), (200, 5, 0.5)]  # k_o [N/m], b_o [N s/m], m_o [kg]
-LAMBDA = 0.1  # of eq. 4.56, as StiffnessReduction::Options has it
+LAMBDA = 0.1  # of eq. 4.56, as StiffnessReduction has it for what yields
 HEAD = ["k_o_N_per_m", "b_o_Ns_per_m", "m_o_kg", "k_N_per_m", "frequency_Hz", "round_trip_ms", "rms_over_that_without"]
 
 

@@ -153,7 +153,7 @@ SceneCompensation read_compensation(TomlReader& in, const toml::table& table) {
   in.allow(table, path, {"method", "filter"});
   SceneCompensation out;
   out.method = static_cast<CompensationMethod>(in.word(table, path, "method", {"stiffness", "simulation"}, "stiffness"));
-  out.filter = in.number(table, path, "filter", {1e-6, 1}, out.filter);
+  if (table.contains("filter")) out.filter = in.number(table, path, "filter", {1e-6, 1});
   return out;
 }
 

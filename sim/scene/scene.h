@@ -89,7 +89,7 @@ enum class CompensationMethod : std::uint8_t {
 /// Clients make up for delay.
 struct SceneCompensation {
   CompensationMethod method = CompensationMethod::stiffness;
-  double filter = 0.1;  ///< lambda of StiffnessReduction
+  std::optional<double> filter{};  ///< lambda of StiffnessReduction; none: by what is touched
 };
 
 /// What the probe of a user hangs on. The probe moves `scale` times as far as the device, and the device exerts force / scale: what is touched

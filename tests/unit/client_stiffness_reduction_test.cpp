@@ -226,6 +226,32 @@ TEST(StiffnessReduction, TheFilterBeginsWithTheFirstValueOfAContact) {
   EXPECT_EQ(reduction.reduced(touch, 10), kCoupling);
 }
 
+/// lambda of the step from the first value of a contact to the second, of touches that want k and then less.
+TEST(StiffnessReduction, WithoutAFilterItGoesByWhatIsTouched) {
+  using Rigid = StiffnessReduction::RigidTouch;
+  const auto lambda = [](const auto& touch, double wanted) {
+    auto reduction = StiffnessReduction::create({.most_delay = 10}).value();
+    reduction.move({});
+    EXPECT_EQ(reduction.reduced(touch, 10), touch.coupling) << "nothing has moved";
+    for (int i = 1; i <= 10; ++i) reduction.move({0, 0, -0.001 * i});
+    return (touch.coupling - reduction.reduced(touch, 10)) / (touch.coupling - wanted);
+  };
+  const Touch yields{{0, 0, -0.01}, {0, 0, 1}, kCoupling, kObject};
+  EXPECT_NEAR(lambda(yields, kLeast), 0.1, 1e-9);
+  // It goes down with 1 N against it, and lies on nothing: of the stretch of 10 mm all but what 1 N needs is behind.
+  Rigid alone{.stretch = {0, 0, -0.01},
+              .normal = {0, 0, 1},
+              .coupling = 500,
+              .moves = true,
+              .external = {0, 0, 1},
+              .others = {},
+              .hold = {}};
+  const double behind = 0.01 - 1.0 / 500, wanted = 500 / (1 + 500 * behind);
+  EXPECT_NEAR(lambda(alone, wanted), 0.07, 1e-9);
+  alone.others = {0, 0, 1e-12};
+  EXPECT_NEAR(lambda(alone, wanted), 0.03, 1e-9);
+}
+
 TEST(StiffnessReduction, ATickAllocatesNothing) {
   auto reduction = StiffnessReduction::create({}).value();
   const std::uint64_t before = testing::allocated_bytes();
