@@ -23,7 +23,9 @@ Vec3 others_push(std::span<const GridForce> load, std::size_t user, unsigned for
 Result<Compensation> Compensation::create(const Scene& scene) {
   Compensation out(scene);
   for (std::size_t i = 0; i < scene.users.size(); ++i) {
-    TACTUS_TRY(auto reduction, StiffnessReduction::create({.filter = scene.compensation->filter}));
+    TACTUS_TRY(auto reduction,
+               StiffnessReduction::create({.as_printed = scene.compensation->method == CompensationMethod::stiffness_thesis,
+                                           .filter = scene.compensation->filter}));
     out.reductions_.push_back(std::move(reduction));
   }
   return out;
@@ -153,7 +155,7 @@ Result<std::unique_ptr<Client>> Client::create_remote(Server& server, std::size_
   std::unique_ptr<Client> client(new Client(server, {}));
   const auto& asked = client->scene_.compensation;
   if (!asked) return client;
-  if (asked->method == CompensationMethod::simulation) {
+  if (!asked->is_softer()) {
     TACTUS_TRY(client->prediction_, Prediction::create(own, user));
     return client;
   }

@@ -85,7 +85,7 @@ Result<void> Server::add_codec(const ServerCodec& codec) {
   builder.rigid_profile(codec.coding.rigid);
   for (std::size_t i = 0; i < scene_.deformables.size(); ++i) {
     TraceCoding coding = codec.coding;
-    if (scene_.compensation && scene_.compensation->method == CompensationMethod::stiffness) {
+    if (scene_.compensation && scene_.compensation->is_softer()) {
       TACTUS_TRY(auto map, stiffness_map(scene_.deformables[i]));
       coding.deformable.stiffness = std::move(map.stiffness);
     }

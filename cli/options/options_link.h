@@ -101,21 +101,23 @@ class HandArguments {
 // ==== compensation option ====
 // The option --compensation of commands that simulate.
 
-/// in   clients  none, stiffness, simulation; empty: what the scene says
+/// in   clients  none, or a method of CompensationMethod; empty: what the scene says
 inline void compensate(sim::Scene& scene, const std::string& clients) {
   if (clients.empty()) return;
   if (clients == "none") return scene.compensation.reset();
   if (!scene.compensation) scene.compensation.emplace();
-  scene.compensation->method = clients == "stiffness" ? sim::CompensationMethod::stiffness : sim::CompensationMethod::simulation;
+  scene.compensation->method = clients == "stiffness"          ? sim::CompensationMethod::stiffness
+                               : clients == "stiffness-thesis" ? sim::CompensationMethod::stiffness_thesis
+                                                               : sim::CompensationMethod::simulation;
 }
 
 inline Option* add_compensation(Command& command, std::string& clients) {
   return command
-      .add_option(
-          "--compensation", clients,
-          "What clients do about delay: none, stiffness (render what they touch softer) or simulation (simulate the scene "
-          "themselves; the server corrects them) [the scene's]")
-      ->one_of({"none", "stiffness", "simulation"})
+      .add_option("--compensation", clients,
+                  "What clients do about delay: none, stiffness (render what they touch softer), stiffness-thesis (by the "
+                  "thesis's algorithm as printed) or simulation (simulate the scene "
+                  "themselves; the server corrects them) [the scene's]")
+      ->one_of({"none", "stiffness", "stiffness-thesis", "simulation"})
       ->type_name("CLIENTS");
 }
 

@@ -61,15 +61,14 @@ void warn_of_swing(const sim::Scene& scene, std::size_t user, const TouchReport&
   const std::string what =
       fmt::format("{}: the hand swung by {:.2g} mm where it was to hold still: ", touch.user, 1e3 * touch.swing);
   if (!has_network) return report.warnings.push_back(what + "its loop is not stable. Give a smaller stiffness");
-  const char* remedy = !scene.compensation ? "--compensation stiffness or simulation"
-                       : scene.compensation->method == sim::CompensationMethod::simulation
-                           ? "--compensation stiffness, or max_damping = 50 in [touch]"
-                           : "--compensation simulation, or max_damping = 50 in [touch]";
+  const char* remedy = !scene.compensation                ? "--compensation stiffness or simulation"
+                       : !scene.compensation->is_softer() ? "--compensation stiffness, or max_damping = 50 in [touch]"
+                                                          : "--compensation simulation, or max_damping = 50 in [touch]";
   report.warnings.push_back(what + "with this delay the loop is not stable. Give " + remedy);
 }
 
 void warn_of_undershoot(const sim::Scene& scene, const TouchReport& touch, bool has_network, Report& report) {
-  if (!has_network || !scene.compensation || scene.compensation->method != sim::CompensationMethod::stiffness) return;
+  if (!has_network || !scene.compensation || !scene.compensation->is_softer()) return;
   if (touch.largest_force >= kUnder * touch.largest_server_force - kUnderForce) return;
   report.warnings.push_back(fmt::format(
       "{}: at most {:.2g} N are rendered where the server's force is up to {:.2g} N: softer rendering shows what resists "
@@ -79,7 +78,7 @@ void warn_of_undershoot(const sim::Scene& scene, const TouchReport& touch, bool 
 
 /// An object at which several users are, whose clients simulate it without enough damping for long delays; empty: there is none.
 std::string shared_object(const sim::Scene& scene) {
-  if (!scene.compensation || scene.compensation->method != sim::CompensationMethod::simulation) return {};
+  if (!scene.compensation || scene.compensation->is_softer()) return {};
   if (scene.touch && scene.touch->max_damping >= kCalms) return {};
   for (std::size_t object = 0; object < scene.objects.size(); ++object) {
     const auto there = std::ranges::count(scene.users, object, &sim::SceneUser::object);

@@ -6,13 +6,14 @@
 #include <cmath>
 #include <new>
 #include <numbers>
+#include <utility>
 
 #include <tactus/base/rule.h>
 
 namespace tactus {
 
 StiffnessReduction::StiffnessReduction(const Options& options)
-    : filter_(options.filter), path_(options.most_delay + std::size_t{1}) {}
+    : as_printed_(options.as_printed), filter_(options.filter), path_(options.most_delay + std::size_t{1}) {}
 
 Result<StiffnessReduction> StiffnessReduction::create(const Options& options) try {
   const bool has_delay = options.most_delay >= 1 && options.most_delay <= kMostDelay;
@@ -59,7 +60,25 @@ static double blending(const Vec3& hold, const Vec3& normal) noexcept {
   return 2 / std::numbers::pi * arc_cosine(std::min(1.0, std::abs(dot(hold, normal)) / length));
 }
 
+/// The object's own damping (b_o of 4.29) is part of the load.
+double StiffnessReduction::as_printed(const RigidTouch& touch, std::uint32_t round_trip) noexcept {
+  constexpr std::uint32_t kVelocityTicks = 8;
+  const double k = touch.coupling;
+  const Vec3 way = displacement(kVelocityTicks);
+  const double ticks = static_cast<double>(std::min<std::size_t>(kVelocityTicks, std::max<std::size_t>(known_, 2) - 1));
+  const double length = norm(way), behind = blending(touch.hold, touch.normal) * k * round_trip * length / ticks;
+  if (!is_touching_) rendered_ = 0;
+  double resists = 0;  // -f_r
+  if (touch.moves) resists = length > 0 ? -dot(touch.external + touch.others, (1 / length) * way) : 0;
+  else if (rendered_ >= norm(touch.hold)) resists = norm(touch.hold);
+  if (!std::exchange(is_touching_, true)) mean_ = k;
+  const double stiffness = filtered(resists > 0 ? k * resists / (resists + behind) : k, kPrintedFilter);
+  rendered_ = stiffness * norm(touch.stretch);
+  return stiffness;
+}
+
 double StiffnessReduction::reduced(const RigidTouch& touch, std::uint32_t round_trip) noexcept {
+  if (as_printed_) return as_printed(touch, round_trip);
   const double k = touch.coupling, stretch = norm(touch.stretch);
   const double usual = norm(touch.others) > 0 ? kSharedFilter : kRigidFilter;
   if (!(stretch > 0)) return filtered(k, usual);

@@ -25,6 +25,10 @@
 /// force k_r p is F: that is 4.30. It has w in place of min(..), which is more than the stretch holds of it while a user comes from outside or
 /// has just overcome the friction: the force would break down. And where others push harder than the object resists, so that it runs
 /// away from the user, F is 0 and not left out: 4.30 would switch to k and beat the user.
+///
+/// Algorithm 1 as printed, for comparison (Options::as_printed). It differs: along the device's velocity and not the push (4.29); R times that velocity, here the
+/// mean of 8 ms, and not the way of the last round trip; all of it, and not what the stretch holds; the pushes of others do not count as resistance at rest, and who is
+/// pushed on gets k; at rest k while the force rendered last is below the friction; the filter begins with k; lambda is 0.01.
 #pragma once
 
 #include <cstddef>
@@ -45,10 +49,11 @@ class StiffnessReduction {
   static constexpr std::uint32_t kMostDelay = 10'000;  ///< [ticks]
   /// Lambda of what yields, of rigid objects, and of those that others push, too: two hands side by side swing at one object the more, the
   /// faster their stiffness follows. 0.01 of thesis 4.2.3.4 lags behind a press of 0.5 Hz. reports/delay
-  static constexpr double kYieldingFilter = 0.1, kRigidFilter = 0.07, kSharedFilter = 0.03;
+  static constexpr double kYieldingFilter = 0.1, kRigidFilter = 0.07, kSharedFilter = 0.03, kPrintedFilter = 0.01;
 
   struct Options {
     std::uint32_t most_delay = 1000;  ///< [ticks] longest round trip that is made up for, 1 to kMostDelay
+    bool as_printed = false;          ///< of rigid objects: algorithm 1, as above
     std::optional<double> filter{};   ///< lambda per tick, above 0 to 1; none: by what is touched, below
   };
   struct DeformableTouch {
@@ -85,11 +90,14 @@ class StiffnessReduction {
   explicit StiffnessReduction(const Options& options);
   Vec3 displacement(std::uint32_t round_trip) const noexcept;
   double filtered(double wanted, double usual) noexcept;
+  double as_printed(const RigidTouch& touch, std::uint32_t round_trip) noexcept;
 
+  bool as_printed_;
   std::optional<double> filter_;
   std::vector<Vec3> path_;  // ring
   std::size_t next_ = 0, known_ = 0;
-  double mean_ = 0;  // [N/m]
+  double mean_ = 0;      // [N/m]
+  double rendered_ = 0;  // [N] last, as printed
   bool is_touching_ = false;
 };
 

@@ -23,7 +23,7 @@ QUANTITIES = [
     ("seen_away_95_m", "same_motion_seen_away_95_mm", "95 % of it", 1e3, 2),
     ("users_apart_95_m", "same_motion_users_apart_95_mm", "users apart [mm]", 1e3, 2),
 ]
-CLIENTS = {"none": "nothing", "stiffness": "softer rendering", "simulation": "own simulation",
+CLIENTS = {"none": "nothing", "stiffness": "softer rendering", "stiffness-thesis": "softer, as printed", "simulation": "own simulation",
            "simulation, 10 % off": "the same, 10 % off"}
 
 

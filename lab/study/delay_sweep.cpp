@@ -73,7 +73,7 @@ DelayNumbers numbers(const DelayEffect& rendered, const DelayEffect& played, std
 }  // namespace
 
 const char* name(Clients clients) noexcept {
-  constexpr std::array kNames{"none", "stiffness", "simulation", "simulation, 10 % off"};
+  constexpr std::array kNames{"none", "stiffness", "stiffness-thesis", "simulation", "simulation, 10 % off"};
   return kNames[static_cast<std::size_t>(clients)];
 }
 
@@ -84,6 +84,7 @@ tl::expected<DelayResult, Diagnostic> run_point(const Scene& scene, const DelayP
   for (std::size_t c = 0; c < kClients.size(); ++c) {
     DelayCase one{.link = link_of(point), .seed = point.seed};
     if (kClients[c] == Clients::stiffness) one.compensation.emplace();
+    if (kClients[c] == Clients::printed) one.compensation = SceneCompensation{.method = CompensationMethod::stiffness_thesis};
     if (kClients[c] >= Clients::simulation) one.compensation = SceneCompensation{.method = CompensationMethod::simulation};
     if (kClients[c] == Clients::misled) one.own = &wrong;
     TACTUS_TRY(const DelayRun rendered, run_delayed(scene, one));

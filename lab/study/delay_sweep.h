@@ -16,10 +16,11 @@ namespace tactus::sim::study {
 enum class Clients : std::uint8_t {
   plain,       ///< nothing
   stiffness,   ///< CompensationMethod::stiffness
+  printed,     ///< CompensationMethod::stiffness_thesis
   simulation,  ///< CompensationMethod::simulation
   misled,      ///< the same, and what they know of the scene is wrong: mass, friction, stiffness and Young's modulus by +10 %
 };
-inline constexpr std::array kClients{Clients::plain, Clients::stiffness, Clients::simulation, Clients::misled};
+inline constexpr std::array kClients{Clients::plain, Clients::stiffness, Clients::printed, Clients::simulation, Clients::misled};
 const char* name(Clients clients) noexcept;
 
 struct DelayPoint {

@@ -82,14 +82,16 @@ struct SceneTouch {
 
 /// How clients make up for the delay of what they show.
 enum class CompensationMethod : std::uint8_t {
-  stiffness,   ///< they render it softer (sim/client.h; thesis 4.2.3 and 4.3.3)
-  simulation,  ///< they simulate it themselves, and the server corrects them (sim/prediction/prediction.h; thesis 5.2)
+  stiffness,         ///< they render it softer (sim/client.h; thesis 4.2.3 and 4.3.3)
+  stiffness_thesis,  ///< likewise, what is rigid by algorithm 1 as printed: for comparison
+  simulation,        ///< they simulate it themselves, and the server corrects them (sim/prediction/prediction.h; thesis 5.2)
 };
 
 /// Clients make up for delay.
 struct SceneCompensation {
   CompensationMethod method = CompensationMethod::stiffness;
   std::optional<double> filter{};  ///< lambda of StiffnessReduction; none: by what is touched
+  bool is_softer() const noexcept { return method != CompensationMethod::simulation; }
 };
 
 /// What the probe of a user hangs on. The probe moves `scale` times as far as the device, and the device exerts force / scale: what is touched

@@ -131,6 +131,42 @@ TEST_F(Pushing, AtConstantSpeedTheForceIsThatWithoutDelay) {
   EXPECT_NEAR(k, 207, 1);
 }
 
+/// Lines 2 to 8 of algorithm 1.
+TEST_F(Pushing, AsPrintedTheStiffnessFollowsTheDevicesVelocity) {
+  reduction_ = StiffnessReduction::create({.most_delay = 200, .as_printed = true, .filter = 1}).value();
+  go(1e-4, 300);
+  const double resistance = kFriction + 0.3 * 5 * 0.1, stretch = resistance / kStiffness + 0.001;
+  const double reduced = kStiffness * resistance / (resistance + kStiffness * 50 * 1e-4);
+  EXPECT_NEAR(reduction_.reduced(moving(stretch, resistance), 50), reduced, 1e-9) << "4.30, whatever the stretch holds";
+  EXPECT_NEAR(reduced, 207, 1);
+  EXPECT_NEAR(reduction_.reduced(moving(stretch, resistance), 100),
+              kStiffness * resistance / (resistance + kStiffness * 100 * 1e-4), 1e-9);
+  Rigid outpushed = moving(stretch);
+  outpushed.others = {2 * kFriction, 0, 0};
+  EXPECT_EQ(reduction_.reduced(outpushed, 50), kStiffness) << "line 3";
+  go(0, 8);
+  EXPECT_EQ(reduction_.reduced(moving(stretch, resistance), 50), kStiffness)
+      << "a device that stands still leaves nothing behind";
+}
+
+TEST_F(Pushing, AsPrintedARestingObjectIsStiffUntilItsFrictionIsExceeded) {
+  reduction_ = StiffnessReduction::create({.most_delay = 200, .as_printed = true, .filter = 1}).value();
+  go(1e-4, 300);
+  EXPECT_EQ(reduction_.reduced(standing(0.9 * kFriction / kStiffness), 50), kStiffness) << "line 8: nothing was rendered yet";
+  EXPECT_EQ(reduction_.reduced(standing(1.1 * kFriction / kStiffness), 50), kStiffness) << "line 8: less than the friction was";
+  const double reduced = kStiffness * kFriction / (kFriction + kStiffness * 50 * 1e-4);
+  EXPECT_NEAR(reduction_.reduced(standing(1.1 * kFriction / kStiffness), 50), reduced, 1e-9) << "line 7";
+  reduction_.release();
+  EXPECT_EQ(reduction_.reduced(standing(1.1 * kFriction / kStiffness), 50), kStiffness) << "another contact";
+}
+
+TEST_F(Pushing, AsPrintedTheFilterBeginsWithTheOriginalStiffness) {
+  reduction_ = StiffnessReduction::create({.most_delay = 200, .as_printed = true}).value();
+  go(1e-4, 300);
+  const double reduced = kStiffness * kFriction / (kFriction + kStiffness * 50 * 1e-4);
+  EXPECT_NEAR(reduction_.reduced(moving(0.01), 50), 0.01 * reduced + 0.99 * kStiffness, 1e-9);
+}
+
 /// While it gains speed it takes more than it resists with: the fraction of that which 4.30 leaves.
 TEST_F(Pushing, WhoSetsAMassInMotionFeelsSomeOfItsInertia) {
   go(1e-4, 300);
