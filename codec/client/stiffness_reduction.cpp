@@ -64,12 +64,12 @@ static double blending(const Vec3& hold, const Vec3& normal) noexcept {
 double StiffnessReduction::as_printed(const RigidTouch& touch, std::uint32_t round_trip) noexcept {
   constexpr std::uint32_t kVelocityTicks = 8;
   const double k = touch.coupling;
-  const Vec3 way = displacement(kVelocityTicks);
+  const Vec3 moved = displacement(kVelocityTicks);
   const double ticks = static_cast<double>(std::min<std::size_t>(kVelocityTicks, std::max<std::size_t>(known_, 2) - 1));
-  const double length = norm(way), behind = blending(touch.hold, touch.normal) * k * round_trip * length / ticks;
+  const double length = norm(moved), behind = blending(touch.hold, touch.normal) * k * round_trip * length / ticks;
   if (!is_touching_) rendered_ = 0;
   double resists = 0;  // -f_r
-  if (touch.moves) resists = length > 0 ? -dot(touch.external + touch.others, (1 / length) * way) : 0;
+  if (touch.moves) resists = length > 0 ? -dot(touch.external + touch.others, (1 / length) * moved) : 0;
   else if (rendered_ >= norm(touch.hold)) resists = norm(touch.hold);
   if (!std::exchange(is_touching_, true)) mean_ = k;
   const double stiffness = filtered(resists > 0 ? k * resists / (resists + behind) : k, kPrintedFilter);

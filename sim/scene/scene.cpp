@@ -152,7 +152,8 @@ SceneCompensation read_compensation(TomlReader& in, const toml::table& table) {
   const std::string path = "compensation";
   in.allow(table, path, {"method", "filter"});
   SceneCompensation out;
-  out.method = static_cast<CompensationMethod>(in.word(table, path, "method", {"stiffness", "stiffness-thesis", "simulation"}, "stiffness"));
+  out.method = static_cast<CompensationMethod>(
+      in.word(table, path, "method", {"stiffness", "stiffness-thesis", "simulation"}, "stiffness"));
   if (table.contains("filter")) out.filter = in.number(table, path, "filter", {1e-6, 1});
   return out;
 }
