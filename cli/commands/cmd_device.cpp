@@ -106,6 +106,7 @@ tl::expected<std::optional<sim::Scene>, Failure> scene_of(const CaptureOptions& 
   if (found == scene->users.end())
     return refuse_arguments(fmt::format("--user {}: not a user of {}", options.user, options.scene), "Give a user of the scene.");
   user = static_cast<std::size_t>(found - scene->users.begin());
+  scale_device(*found, options.device);
   return std::optional(std::move(*scene));
 }
 
@@ -204,6 +205,7 @@ struct PlayOptions {
   DeviceArguments device;
   Exerted exerted = Exerted::nothing;
   double stiffness = 200;  // [N/m]
+  double scale = 1;        // of the recording
   double duration = 0;     // [s] 0: until the recording ends
   CommonOptions common;
 };
@@ -257,7 +259,7 @@ Outcome run_play(const PlayOptions& options) {
     TACTUS_TRY(auto created, OutputFile::create_growing(options.output, options.common.existing(), others));
     output.emplace(std::move(created));
   }
-  RenderedRecording rendered(*std::move(recording), options.exerted, options.stiffness);
+  RenderedRecording rendered(*std::move(recording), options.exerted, options.stiffness, options.scale);
   const DevicePlan plan{.path = output ? output->working_path() : "",
                         .shown_path = options.output,
                         .command = "play",
@@ -297,6 +299,14 @@ void setup_play(Command& app, Action& action) {
       ->check(number(1, 10'000))
       ->show_default()
       ->type_name("N/M");
+  command
+      .add_option(
+          "--scale", options->scale,
+          "The hand of the recording moves so many times as far as the device, which exerts so many times less: that of its "
+          "scene, or of the `capture` or `join` that made it")
+      ->check(number(sim::kLeastDeviceScale, sim::kLargestDeviceScale))
+      ->show_default()
+      ->type_name("FACTOR");
   add_quantity(command, "--duration", options->duration, Dimension::time, "End after this long [when the recording ends]")
       ->check(above_zero(Dimension::time));
   command.add_option("-o,--output", options->output, "Trace to write of what the hand did (MCAP), in the recording's frame")

@@ -180,6 +180,12 @@ void add_scale(Command& command, DeviceArguments& arguments) {
       ->type_name("FACTOR");
 }
 
+void scale_device(sim::SceneUser& user, const DeviceArguments& arguments) {
+  if (arguments.scale == 0) return;
+  user.device.max_force *= arguments.scale / user.device.scale;
+  user.device.scale = arguments.scale;
+}
+
 std::string replayed_file(const DeviceArguments& arguments) {
   const auto [backend, which] = split(arguments.name);
   return backend == kReplay ? which : "";
@@ -224,7 +230,7 @@ tl::expected<ChosenDevice, Failure> open_device(const DeviceArguments& arguments
   if (!device) return refuse(device.error());
   ChosenDevice chosen{std::move(*device)};
   if (scene == nullptr) return chosen;
-  chosen.frame = {scene->users[user].start, arguments.scale > 0 ? arguments.scale : scene->users[user].device.scale};
+  chosen.frame = {scene->users[user].start, scene->users[user].device.scale};
   return chosen;
 }
 

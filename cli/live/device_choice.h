@@ -68,6 +68,8 @@ struct DeviceArguments {
 void add_device_options(Command& command, DeviceArguments& arguments);
 /// Of a command in which the device touches a scene.
 void add_scale(Command& command, DeviceArguments& arguments);
+/// The user's device as typed, with its largest force.
+void scale_device(sim::SceneUser& user, const DeviceArguments& arguments);
 
 /// The file that a replayed device is read from; empty: it is no such device.
 std::string replayed_file(const DeviceArguments& arguments);

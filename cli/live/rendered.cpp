@@ -31,8 +31,8 @@ constexpr double kSmoothing = 0.1;                     // of the speed, per tick
 
 }  // namespace
 
-RenderedRecording::RenderedRecording(device::Recording recording, Exerted exerted, double stiffness)
-    : recording_(std::move(recording)), exerted_(exerted), stiffness_(stiffness) {}
+RenderedRecording::RenderedRecording(device::Recording recording, Exerted exerted, double stiffness, double scale)
+    : recording_(std::move(recording)), exerted_(exerted), stiffness_(stiffness), frame_{.scale = scale} {}
 
 TraceInfo RenderedRecording::info() const {
   TraceInfo info;
@@ -41,14 +41,13 @@ TraceInfo RenderedRecording::info() const {
 }
 
 tl::expected<Vec3, Failure> RenderedRecording::step(const device::ServoTick& tick, TraceFrame& frame) {
-  DeviceSample sample = tick.reading.sample;
   if (begin_ < 0 && tick.reading.state == device::Reading::State::valid) {
     begin_ = tick.due;
-    origin_ = recording_.begin() - sample.position;
+    frame_.origin = recording_.begin() - frame_.scale * tick.reading.sample.position;
     position_ = recording_.begin();
     position_at_ = tick.due;
   }
-  sample.position = sample.position + origin_;
+  const DeviceSample sample = frame_.to_world(tick.reading.sample);
   frame.users.front().device = sample;
   if (begin_ < 0) return Vec3{};
   const device::Recording::Moment moment = recording_.at(tick.due - begin_);

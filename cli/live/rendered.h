@@ -53,14 +53,15 @@ enum class Exerted : std::uint8_t {
 };
 
 /// A recording, played from the first sample on that the device has of its hand; both hands begin at the same position. The trace is in the
-/// recording's frame.
+/// recording's frame, whose probe moves `scale` times as far as the device.
 class RenderedRecording final : public Rendered {
  public:
   /// in   stiffness  [N/m] of the spring
-  RenderedRecording(device::Recording recording, Exerted exerted, double stiffness);
+  RenderedRecording(device::Recording recording, Exerted exerted, double stiffness, double scale);
 
   TraceInfo info() const override;
   tl::expected<Vec3, Failure> step(const device::ServoTick& tick, TraceFrame& frame) override;
+  double scale() const noexcept override { return frame_.scale; }
   bool is_over() const noexcept override { return is_over_; }
 
   /// How far the hands were from each other [m].
@@ -77,7 +78,7 @@ class RenderedRecording final : public Rendered {
   double stiffness_;
   device::Time begin_ = -1;  // of the recording
   bool is_over_ = false;
-  Vec3 origin_{};                 // [m] of the device's frame in the recording's
+  DeviceFrame frame_;             // in the recording's
   Vec3 position_{}, speed_{};     // [m], [m/s] of the hand at the tick before; the speed is smoothed
   device::Time position_at_ = 0;  // when the hand was there
   double sum_ = 0, largest_ = 0;  // [m]

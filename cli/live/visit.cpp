@@ -32,7 +32,7 @@ TickTiming tick_timing_of(const device::ServoTimes& times) {
 tl::expected<Body, Failure> make_body(const JoinOptions& options) {
   const auto path = sim::find_scene(options.scene);
   if (!path) return refuse(path.error());
-  const auto scene = sim::load_scene(*path);
+  auto scene = sim::load_scene(*path);
   if (!scene) return refuse(scene.error());
   const auto user = std::ranges::find(scene->users, options.user, &sim::SceneUser::name);
   if (scene->users.empty())
@@ -42,11 +42,12 @@ tl::expected<Body, Failure> make_body(const JoinOptions& options) {
     return refuse_arguments(fmt::format("--user {}: not a user of {}", options.user, options.scene),
                             fmt::format("Its users: {}.", names_of(scene->users)));
   Body body;
+  body.user = options.user.empty() ? 0 : static_cast<std::size_t>(user - scene->users.begin());
+  scale_device(scene->users[body.user], options.device);
   auto shapes = sim::Server::create(
       *scene, {.seed = options.device.seed, .codec = sim::ServerCodec{.sender = {}, .sessions = true, .limits = options.limits}});
   if (!shapes) return tl::unexpected(allow_more(refuse(options.scene, shapes.error()).value(), shapes.error()));
   body.shapes = std::move(*shapes);
-  body.user = options.user.empty() ? 0 : static_cast<std::size_t>(user - scene->users.begin());
   auto client = sim::Client::create_remote(*body.shapes, body.user, *scene);
   if (!client) return refuse(options.scene, client.error());
   body.client = std::move(*client);

@@ -18,7 +18,7 @@
 namespace tactus::cli {
 namespace {
 
-// What the grid of every stream can hold (make_thresholds() of the rigid encoder): 8 steps of position and of rotation.
+// What the grid of every stream can hold (pose_thresholds() of rigid_bounds.cpp): 8 steps of position and of rotation.
 constexpr double kLeastLength = 2e-6, kMostLength = 1e6;        // [m]
 constexpr double kLeastAngle = 0.002 * std::numbers::pi / 180;  // [rad]
 

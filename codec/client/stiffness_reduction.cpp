@@ -66,7 +66,8 @@ double StiffnessReduction::as_printed(const RigidTouch& touch, std::uint32_t rou
   const double k = touch.coupling;
   const Vec3 moved = displacement(kVelocityTicks);
   const double ticks = static_cast<double>(std::min<std::size_t>(kVelocityTicks, std::max<std::size_t>(known_, 2) - 1));
-  const double length = norm(moved), behind = blending(touch.hold, touch.normal) * k * round_trip * length / ticks;
+  const auto late = static_cast<double>(std::min<std::size_t>(round_trip, path_.size() - 1));
+  const double length = norm(moved), behind = blending(touch.hold, touch.normal) * k * late * length / ticks;
   if (!is_touching_) rendered_ = 0;
   double resists = 0;  // -f_r
   if (touch.moves) resists = length > 0 ? -dot(touch.external + touch.others, (1 / length) * moved) : 0;

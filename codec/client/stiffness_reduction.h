@@ -26,10 +26,10 @@
 /// has just overcome the friction: the force would break down. And where others push harder than the object resists, so that it runs
 /// away from the user, F is 0 and not left out: 4.30 would switch to k and beat the user.
 ///
-/// Algorithm 1 as printed, for comparison (Options::as_printed). It differs: along the device's velocity and not the push (4.29); R times that
-/// velocity, here the mean of 8 ms, and not the displacement of the last round trip; all of it, and not what the stretch holds; the pushes of
-/// others do not count as resistance at rest, and who is pushed on gets k; at rest k while the force rendered last is below the friction; the
-/// filter begins with k; lambda is 0.01.
+/// Algorithm 1 as printed, for comparison (Options::as_printed), by touch: each begins with k and lambda is 0.01. It differs: along the device's velocity, not the push
+/// (4.29); R, playout included, times that velocity, the mean of 8 ms, not the displacement of the last round trip; all of it, not what the stretch holds; at rest the
+/// pushes of others do not count, and k is kept while the force rendered last, before any limit of the device, is below the friction; who is pushed on gets k. At rest is
+/// what is shown at rest, and a round trip beyond the known path counts in full, up to most_delay.
 #pragma once
 
 #include <cstddef>

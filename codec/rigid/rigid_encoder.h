@@ -69,6 +69,7 @@ class RigidEncoder {
     bool follow_up = false;
     VersionedPath after;  // the state of its path is what the decoder will hold
   };
+
   void wake() noexcept;
   void wake(std::uint32_t object) noexcept;
   void look() noexcept;

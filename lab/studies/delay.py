@@ -183,14 +183,15 @@ def command_of(options, scenes):
 
 def markdown(rows, options, scenes, drawn):
     context = report.context()
-    out = (f"# Delay, and three kinds of clients\n\n`{command_of(options, scenes)} -o DIR` ({context['compiler']}, "
+    out = (f"# Delay, and what clients do about it\n\n`{command_of(options, scenes)} -o DIR` ({context['compiler']}, "
            f"{context['build']} build). "
            "All of it is deterministic.\n\n"
            "Each user is behind a network of their own, *constant* or *gamma* (half of the round trip gamma distributed, a new "
            "value each "
            "0.5 s, behind adaptive playout); every state and device sample is sent, so that only the delay differs. Clients: "
            "*none* show the "
-           "past as it comes; *stiffness* render it softer (thesis 4.2.3, 4.3.3); *simulation* simulate the scene themselves, "
+           "past as it comes; *stiffness* render it softer (thesis 4.2.3, 4.3.3), *stiffness-thesis* what is rigid by the thesis's "
+           "algorithm 1 as printed; *simulation* simulate the scene themselves, "
            "and the server "
            "corrects them; *10 % off* do so with a mass, friction, stiffness and Young's modulus 10 % too high.\n\n"
            "Mean over the seeds and, in parentheses, the seed farthest from zero. Hands that feel the force, against the same "

@@ -18,6 +18,7 @@ from captures import CLIENT, ROOT, SERVER, Row, Sent, rows_of, write_capture
 sys.path.insert(0, str(ROOT / "conformance"))
 from conventions import Cursor, StreamError, require  # noqa: E402
 import session  # noqa: E402
+from datagram import END_OF_TICKS, FARTHEST_OFFSET, LARGEST_DATAGRAM, check_of  # noqa: E402
 from session import CUT, SPARE  # noqa: E402
 
 UP, DOWN = session.UP, session.DOWN
@@ -42,7 +43,7 @@ def read_part(kind: int, direction: int, e: Cursor) -> None:
         return
     if kind == session.TICK_MAPPING and direction == DOWN:
         begin, offset = e.varint(CUT, SPARE), e.varint(CUT, SPARE)
-        require(begin < session.END_OF_TICKS and offset <= 2 * session.FARTHEST_OFFSET and e.left() == 0, *SPARE)
+        require(begin < END_OF_TICKS and offset <= 2 * FARTHEST_OFFSET and e.left() == 0, *SPARE)
         return
     sizes = {session.ACK: (2, 2), session.BUTTONS: (4, 4), session.STATE: (1,), session.HASH: (1, 2, 4)}
     varints = {session.ACK: 1, session.CLOCK: 1, session.PIECE: 1, session.FRAGMENT: 4, session.PACKET_PART: 1}
@@ -100,7 +101,7 @@ def read_handshake(body: bytes, kind: int, direction: int) -> None:
 def rule_broken(datagram: bytes, direction: int) -> str:
     """Of the syntax; empty: none."""
     try:
-        require(6 <= len(datagram) <= session.LARGEST_DATAGRAM, "checksum", "R-SES-1")
+        require(6 <= len(datagram) <= LARGEST_DATAGRAM, "checksum", "R-SES-1")
         head = struct.unpack("<H", datagram[:2])[0]
         require(head & 3 != 3, "invalid", "R-SES-2")
         if head & 3 == session.HANDSHAKE:
@@ -203,7 +204,7 @@ def check_syntax(path: pathlib.Path, rows: list[Row], count: int, rng: random.Ra
         found = shown_rules(row) & set(SYNTAX)
         assert (wanted in found) if wanted else not found, (mutant.hex(), direction, wanted, row)
         broken += wanted != ""
-        if not is_handshake(mutant) and 6 <= len(mutant) <= session.LARGEST_DATAGRAM:
+        if not is_handshake(mutant) and 6 <= len(mutant) <= LARGEST_DATAGRAM:
             assert row.number("tactus.check.status") == 1, (mutant.hex(), row)
     assert count // 10 < broken < count, (broken, count)
     return f"{count} resealed mutants, {broken} break the syntax"
@@ -222,10 +223,10 @@ def check_damage(path: pathlib.Path, rows: list[Row], count: int, rng: random.Ra
     epoch, known = rows[1].number("tactus.own_epoch"), {r.bytes for r in rows}
     for mutant, row in zip(sent[len(start):], rows_of(path, "-2")[len(start):], strict=True):
         cut = mutant.captured is not None and mutant.captured < 28 + len(mutant.payload)
-        if cut or not 6 <= len(mutant.payload) <= session.LARGEST_DATAGRAM or mutant.payload in known:
+        if cut or not 6 <= len(mutant.payload) <= LARGEST_DATAGRAM or mutant.payload in known:
             continue
         body, check = mutant.payload[:-4], struct.unpack("<I", mutant.payload[-4:])[0]
-        holds = any(check == session.check_of(body, e, d) for e in (0, epoch) for d in (UP, DOWN))
+        holds = any(check == check_of(body, e, d) for e in (0, epoch) for d in (UP, DOWN))
         assert holds or (row.number("tactus.check.status") == 0 and "R-SES-1" in shown_rules(row)), row
         bad += not holds
     assert bad > count // 2, bad
