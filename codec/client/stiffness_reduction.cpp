@@ -50,7 +50,7 @@ double StiffnessReduction::reduced(const DeformableTouch& touch, std::uint32_t r
   const double stretch = -dot(touch.stretch, touch.normal), inwards = -dot(displacement(round_trip), touch.normal);
   double wanted = k;
   if (inwards > 0) wanted = inwards < stretch ? k * (1 - follows * inwards / stretch) : k * (1 - follows);
-  return filtered(wanted, kYieldingFilter);
+  return filtered(wanted, kFilter);
 }
 
 /// 4.27; without a hold the object can go anywhere.
@@ -81,7 +81,7 @@ double StiffnessReduction::as_printed(const RigidTouch& touch, std::uint32_t rou
 double StiffnessReduction::reduced(const RigidTouch& touch, std::uint32_t round_trip) noexcept {
   if (as_printed_) return as_printed(touch, round_trip);
   const double k = touch.coupling, stretch = norm(touch.stretch);
-  const double usual = norm(touch.others) > 0 ? kSharedFilter : kRigidFilter;
+  const double usual = norm(touch.others) > 0 ? kSharedFilter : kFilter;
   if (!(stretch > 0)) return filtered(k, usual);
   const Vec3 push = (1 / stretch) * touch.stretch;
   const double resists = touch.moves ? -dot(touch.external, push) : norm(touch.hold);

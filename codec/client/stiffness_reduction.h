@@ -48,9 +48,9 @@ constexpr double followed_fraction(double object, double coupling) noexcept { re
 class StiffnessReduction {
  public:
   static constexpr std::uint32_t kMostDelay = 10'000;  ///< [ticks]
-  /// Lambda of what yields, of rigid objects, and of those that others push, too: two hands side by side swing at one object the more, the
-  /// faster their stiffness follows. 0.01 of thesis 4.2.3.4 lags behind a press of 0.5 Hz. reports/delay
-  static constexpr double kYieldingFilter = 0.1, kRigidFilter = 0.07, kSharedFilter = 0.03, kPrintedFilter = 0.01;
+  /// Lambda, and that of rigid objects that others push, too: two hands side by side swing at one object the more, the faster their stiffness
+  /// follows. 0.01 of thesis 4.2.3.4 lags behind a press of 0.5 Hz; slower ones behind a delay that changes. reports/delay
+  static constexpr double kFilter = 0.1, kSharedFilter = 0.03, kPrintedFilter = 0.01;
 
   struct Options {
     std::uint32_t most_delay = 1000;  ///< [ticks] longest round trip that is made up for, 1 to kMostDelay

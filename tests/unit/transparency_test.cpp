@@ -281,7 +281,7 @@ TEST(PressedObject, CompensationHelpsElsewhere) {
           const std::vector<double> reference = press(pressing)->front().server;
           pressing.users[0].to_server = pressing.users[0].from_server = round_trip / 2;
           const double without = error_of(press(pressing)->front().client, reference);
-          pressing.compensation = StiffnessReduction::kYieldingFilter;
+          pressing.compensation = StiffnessReduction::kFilter;
           const double with = error_of(press(pressing)->front().client, reference);
           EXPECT_LT(with, 0.65 * without) << object.stiffness << ", " << stiffness << ", " << frequency << " Hz, " << round_trip
                                           << " ms";
