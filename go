@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Installs missing packages, builds and runs Tactus on Debian 12. Needs root or sudo only to install packages.
-#   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (4 minutes on 2 cores)
+#   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (5 minutes on 2 cores)
 #   ./go view     the same, and a page that shows it in a browser, out/demo/stream.html (2 minutes and 500 MB more)
 #   ./go test     build with g++ and test: codec, library, program, Python, fuzz corpora, conformance (12 minutes on 2 cores)
 #   ./go test all       and with sanitizers, other compilers, clang-tidy of what changed, a browser (an hour)
