@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include <tactus/client/replica.h>
+#include <tactus/rigid/rigid_states.h>
 #include "tests/unit/rigid_fixture.h"
 
 namespace tactus {
