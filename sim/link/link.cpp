@@ -83,6 +83,20 @@ Link::Link(const LinkOptions& options) : options_(options), loss_(0), jitter_(0)
   for (Random* stream : {&loss_, &jitter_, &gamma_, &duplicate_, &held_}) *stream = Random(seeds.next());
 }
 
+Result<void> Link::restart(const LinkOptions& options, Microseconds now) {
+  TACTUS_TRY(Link next, create(options));
+  next.heap_ = std::move(heap_);  // ordered as before
+  for (InFlight& datagram : next.heap_) {
+    datagram.due -= now;
+    datagram.number = 0;
+  }
+  next.slots_ = std::move(slots_);
+  next.free_slots_ = std::move(free_slots_);
+  next.order_ = order_;
+  *this = std::move(next);
+  return {};
+}
+
 void Link::send(Microseconds now, std::span<const std::uint8_t> datagram) {
   ++counters_.sent;
   const bool is_lost = draw_loss();
@@ -116,7 +130,7 @@ std::optional<Link::Arrival> Link::poll(Microseconds now) noexcept {
   std::pop_heap(heap_.begin(), heap_.end(), kLater);
   heap_.pop_back();
   free_slots_.push_back(first.slot);
-  ++counters_.arrived;
+  if (first.number > 0) ++counters_.arrived;
   if (first.number < newest_arrived_) ++counters_.reordered;
   newest_arrived_ = std::max(newest_arrived_, first.number);
   return Arrival{first.due, slots_[first.slot]};

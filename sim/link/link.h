@@ -125,6 +125,9 @@ class Link {
   ///      burst is shorter than 1 or than the fraction of losses asks for, the rate is not finite, or recorded delays and outages are
   ///      not in order
   static Result<Link> create(const LinkOptions& options);
+  /// `now` is time 0 of a link with these options, whose counters begin anew; what is on its way arrives when it would have, and is not counted.
+  /// err  as create()
+  Result<void> restart(const LinkOptions& options, Microseconds now);
 
   /// pre  `now` never decreases.   time O(log of datagrams on their way); allocates only to hold more of them than ever before.
   void send(Microseconds now, std::span<const std::uint8_t> datagram);
@@ -138,7 +141,7 @@ class Link {
   struct InFlight {
     Microseconds due = 0;
     std::uint64_t order = 0;   // of the heap: ties go by it
-    std::uint64_t number = 0;  // of the datagram
+    std::uint64_t number = 0;  // of the datagram, from 1; 0: it was sent before the link began anew
     std::uint32_t slot = 0;    // of its bytes
   };
   explicit Link(const LinkOptions& options);

@@ -62,14 +62,21 @@ Result<std::unique_ptr<SessionNetwork>> SessionNetwork::create(SharedScene scene
   return network;
 }
 
+static Result<void> lay(std::optional<Link>& link, const LinkOptions& options, Microseconds now) {
+  if (link) return link->restart(options, now);
+  TACTUS_TRY(link, Link::create(options));
+  return {};
+}
+
 Result<void> SessionNetwork::lay_links(const NetworkOptions& options) {
+  const Microseconds since = link_time();
   links_since_ = now_;
   for (std::size_t i = 0; i < users_.size(); ++i) {
     LinkOptions up = options.uplink, down = options.downlink;
     up.seed += 2 * i + 1;
     down.seed += 2 * i;
-    TACTUS_TRY(users_[i].up, Link::create(up));
-    TACTUS_TRY(users_[i].down, Link::create(down));
+    TACTUS_CHECK(lay(users_[i].up, up, since));
+    TACTUS_CHECK(lay(users_[i].down, down, since));
   }
   return {};
 }

@@ -204,6 +204,28 @@ TEST(Link, ABottleneckDelaysAndItsQueueOverflows) {
   EXPECT_EQ(fast.counters.overflowed, 1000 - fast.seen.size());
 }
 
+/// What is on its way arrives when it would have; counters and draws are those of a new link.
+TEST(Link, ThatBeginsAnewLosesNothingThatIsOnItsWay) {
+  const LinkOptions other{.seed = 3, .delay = 5 * kMillisecond, .jitter = 4 * kMillisecond, .loss = 0.5};
+  Link link = Link::create({.seed = 1, .delay = 30 * kMillisecond}).value(), fresh = Link::create(other).value();
+  const std::vector<std::uint8_t> first{1}, second{2};
+  link.send(0, first);
+  link.send(10 * kMillisecond, second);
+  ASSERT_TRUE(link.restart(other, 12 * kMillisecond));
+  EXPECT_EQ(link.next(), 18 * kMillisecond);
+  EXPECT_EQ(link.poll(18 * kMillisecond)->bytes[0], 1);
+  EXPECT_EQ(link.poll(28 * kMillisecond)->bytes[0], 2);
+  EXPECT_EQ(link.counters().arrived, 0u) << "they were sent before";
+  for (Microseconds now = 30 * kMillisecond; now < kSecond; now += kMillisecond)
+    for (Link* one : {&link, &fresh}) one->send(now, first);
+  while (const auto arrival = link.poll(2 * kSecond)) EXPECT_EQ(fresh.poll(2 * kSecond)->time, arrival->time);
+  EXPECT_FALSE(fresh.next());
+  EXPECT_EQ(link.counters().lost, fresh.counters().lost);
+  EXPECT_EQ(link.counters().arrived, fresh.counters().arrived);
+  EXPECT_EQ(link.counters().reordered, fresh.counters().reordered);
+  EXPECT_FALSE(link.restart({.loss = 2}, 0));
+}
+
 TEST(Link, NothingPassesDuringAnOutage) {
   const Passage got =
       run({.delay = 30 * kMillisecond, .outages = {{kSecond, kSecond + 100 * kMillisecond}, {2 * kSecond, 3 * kSecond}}}, 4000);

@@ -123,7 +123,7 @@ SenderOptions one_millimetre() {
 struct Watched {
   std::int64_t judged = 0, over = 0, behind = 0;  // ticks shown, those with any body over its bound; sum of delays [ms]
   std::int64_t healed = -1;                       // tick at which the client had a state of after the last outage
-  std::uint64_t wrong = 0;
+  std::uint64_t wrong = 0, lost = 0;
   bool same = false;  // at the end
 };
 
@@ -153,6 +153,7 @@ Watched watch(const NetworkOptions& options, std::int64_t ticks) {
     out.behind += tick - shown;
   }
   out.wrong = network->sent_to(0).wrong_states;
+  out.lost = network->sent_to(0).lost + network->sent_by(0).lost;
   out.same = network->client(0).receiver()->state_hash(0) == network->server().state_hash(0, 0);
   return out;
 }
@@ -160,10 +161,13 @@ Watched watch(const NetworkOptions& options, std::int64_t ticks) {
 NetworkOptions network_of(const LinkOptions& link) { return {.uplink = link, .downlink = link, .role = Role::observer}; }
 
 TEST(SessionNetwork, WithoutLossNothingIsLate) {
-  const Watched seen = watch(network_of({.seed = 5, .delay = 20'000}), 5000);
-  EXPECT_EQ(seen.over, 0);
-  EXPECT_NEAR(static_cast<double>(seen.behind) / static_cast<double>(seen.judged), 50, 1);
-  EXPECT_TRUE(seen.same);
+  for (const Microseconds delay : {0, 20'000, 100'000, 150'000}) {
+    const Watched seen = watch(network_of({.seed = 5, .delay = delay}), 5000);
+    EXPECT_EQ(seen.over, 0);
+    EXPECT_NEAR(static_cast<double>(seen.behind) / static_cast<double>(seen.judged), 30 + 1e-3 * static_cast<double>(delay), 1);
+    EXPECT_EQ(seen.lost, 0u) << "what is on its way at tick 0 arrives, too";
+    EXPECT_TRUE(seen.same);
+  }
 }
 
 /// Ticks with any of the bodies over its bound, at a round trip of 40 ms.
@@ -193,7 +197,7 @@ TEST(SessionNetwork, ALongerPlayoutIsNeverWorse) {
     }
     EXPECT_LE(over, before) << delay;
     if (delay == 100'000) {
-      EXPECT_LE(4 * over, before) << "copies come in time";
+      EXPECT_LE(2 * over, before) << "copies come in time";
     }
     before = over;
   }
