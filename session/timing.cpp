@@ -173,6 +173,7 @@ void PlayoutClock::learn(std::int64_t lead, std::uint64_t now) noexcept {
     period_ = {.since = now,
                .leads = 0,
                .least = lead,
+               .most = lead,
                .trip = {},
                .base_before = base_then_.value_or(base),
                .trip_before = trip_then_ ? trip_then_ : trip};
@@ -180,6 +181,7 @@ void PlayoutClock::learn(std::int64_t lead, std::uint64_t now) noexcept {
     base_then_ = base;
   }
   period_.least = std::min(period_.least, lead);
+  period_.most = std::max(period_.most, lead);
   ++period_.leads;
 }
 
@@ -212,11 +214,12 @@ void PlayoutClock::add(std::int64_t lead, std::uint64_t now) noexcept {
 /// out  false: there is a change, and not known yet of what
 bool PlayoutClock::is_settled(std::uint64_t now) noexcept {
   const std::int64_t change = period_.least - period_.base_before;
-  const bool changed = period_.leads > 0 && (change > kClockStep + late_ || change < -kClockStep);
+  const bool changed = period_.leads > 0 && (change > kClockStep - spread_.value().value_or(0) || change < -kClockStep);
   const bool known = period_.leads >= 2 && period_.trip && now >= period_.since + kAdaptEvery;
   if (changed && period_.trip_before && !known && now < period_.since + kUndecided) return false;
   if (changed && known && period_.trip_before && 2 * std::abs(*period_.trip - *period_.trip_before) < std::abs(change))
     begin_anew(now);
+  if (period_.leads > 0) spread_.add(period_.least - period_.most, now);
   period_ = {};
   return true;
 }

@@ -114,7 +114,7 @@ class PlayoutClock {
   struct Period {
     std::uint64_t since = 0;  // [us]
     std::size_t leads = 0;
-    std::int64_t least = 0;            // of the leads
+    std::int64_t least = 0, most = 0;  // of the leads
     std::optional<std::int64_t> trip;  // [us] the round trip most like those before
     std::int64_t base_before = 0;      // until then
     std::optional<std::int64_t> trip_before;
@@ -133,6 +133,7 @@ class PlayoutClock {
   PlayoutOptions options_;
   std::int64_t reach_;                                        // [us]
   WindowedMinimum base_{kDelayWindow}, trips_{kDelayWindow};  // of the leads, of the round trips
+  WindowedMinimum spread_{kDelayWindow};                      // of the periods: least less largest lead
   Period period_;
   std::optional<std::int64_t> base_then_, trip_then_;  // at the begin of the last period
   LossBursts bursts_;

@@ -55,6 +55,12 @@ class Standstill {
     most_ = 0;
   }
 
+  /// The world takes so many ticks per millisecond from now on, below 1.
+  void slow_down(double rate) {
+    rate_ = rate;
+    due_ = static_cast<double>(tick_);
+  }
+
   bool is_live() const { return client_->status().state == SessionState::live; }
   double fraction() const { return fraction_; }
   std::int64_t lag() const { return lag_; }  ///< [ticks] of what is shown behind the server
@@ -96,7 +102,9 @@ class Standstill {
     if (client_works) look();
   }
   void tick() {
-    tick_ = static_cast<std::int64_t>((server_now() - kStart) / 1000);
+    due_ += rate_;
+    if (rate_ < 1 && due_ < static_cast<double>(tick_ + 1)) return;
+    tick_ = rate_ < 1 ? tick_ + 1 : static_cast<std::int64_t>((server_now() - kStart) / 1000);
     const RigidSample sample = pendulum(tick_);
     ASSERT_TRUE(server_->submit(server_now(), tick_, {.objects = {&sample, 1}, .contacts = {}, .deformables = {}}));
   }
@@ -141,6 +149,7 @@ class Standstill {
   std::optional<SessionClient> client_;
   sim::Link up_ = sim::Link::create(link(5, of_.loss)).value(), down_ = sim::Link::create(link(6, of_.loss)).value();
   std::int64_t tick_ = -1, lag_ = 0, worst_lead_ = 0, shown_ = -1;
+  double rate_ = 1, due_ = 0;  // of the world; [ticks]
   double fraction_ = 0, most_ = 0, worst_offset_ = 0;
   int frozen_ = 0, stale_ = 0;
 };
@@ -179,6 +188,23 @@ TEST(SessionStandstill, NobodyFeelsAPictureOfBefore) {
     EXPECT_NEAR(static_cast<double>(ends.lag()), static_cast<double>(usual), 35) << of.name() << ", later";
     EXPECT_NEAR(ends.offset_error(), 0, 5) << of.name();
     EXPECT_EQ(ends.wrong_states(), 0u) << of.name();
+  }
+}
+
+/// A world that cannot keep up gives its ticks numbers one after the other, though each stands for a millisecond: what is shown stays near it.
+TEST(SessionStandstill, AWorldThatIsSlowIsShownAsItGoesOn) {
+  for (const double rate : {0.99, 0.9, 0.5}) {
+    Standstill ends({.loss = 0.02});
+    ends.run(12'000);
+    const std::int64_t usual = ends.lag();
+    ends.slow_down(rate);
+    ends.forget();
+    ends.run(40'000);
+    EXPECT_EQ(ends.stale(), 0) << rate;
+    EXPECT_LE(ends.lag(), usual + 80) << rate;
+    EXPECT_LE(ends.worst_lead(), 100) << rate;
+    EXPECT_EQ(ends.fraction(), 1) << rate;
+    EXPECT_EQ(ends.wrong_states(), 0u) << rate;
   }
 }
 
