@@ -38,23 +38,27 @@ struct Sender::Impl {
         shared(std::move(of_others)),
         own(shared ? nullptr : std::make_unique<SharedTruth::Impl>(*scene, options.triggers)),
         device(std::move(of_receiver)),
-        rigid(*scene, with(options.policy, Baseline::previous), 0, max_rigid_packet(*scene), 1, initial_states(*scene), *scene,
+        rigid(*scene, policy_of(0, options.policy), 0, max_rigid_packet(*scene), 1, initial_states(*scene), *scene,
               options.triggers, options.policy, truth().rigid, truth().work ? &*truth().work : nullptr, device.path.get()) {
-    const SenderPolicy policy = with(options.policy, Baseline::acknowledged);
     for (std::size_t i = 0; i < scene->deformables.size(); ++i)
-      deformables.push_back(
-          DeformableEncoder::create(*scene, i, options.deformable, policy, device.shape_of(*scene, scene->deformables[i])));
-    if (scene->loads)
-      loads.emplace(*scene, policy, load_substream(*scene), max_load_packet(*scene), 1, initial_loads(*scene), *scene,
-                    options.load, policy.baseline, *truth().loads);
+      deformables.push_back(DeformableEncoder::create(*scene, i, options.deformable, policy_of(i + 1, options.policy),
+                                                      device.shape_of(*scene, scene->deformables[i])));
+    if (scene->loads) add_loads(options);
     packets.reserve(2 + 2 * deformables.size());
   }
 
   SharedTruth::Impl& truth() noexcept { return own ? *own : *shared->impl_; }
   /// What Baseline::repaired means for these objects.
-  static SenderPolicy with(SenderPolicy policy, Baseline repaired) noexcept {
-    if (policy.baseline == Baseline::repaired) policy.baseline = repaired;
+  SenderPolicy policy_of(std::size_t substream, SenderPolicy policy) const noexcept {
+    if (policy.baseline == Baseline::repaired)
+      policy.baseline = may_chain(*scene, substream) ? Baseline::previous : Baseline::acknowledged;
     return policy;
+  }
+  void add_loads(const SenderOptions& options) {
+    const std::size_t substream = load_substream(*scene);
+    const SenderPolicy policy = policy_of(substream, options.policy);
+    loads.emplace(*scene, policy, substream, max_load_packet(*scene), 1, initial_loads(*scene), *scene, options.load,
+                  policy.baseline, *truth().loads);
   }
   Result<void> read(std::int64_t tick, const Truth& truth) noexcept;
   Result<std::span<const Packet>> encode(std::int64_t tick, const Truth& truth, std::optional<std::uint64_t> number) noexcept;
@@ -202,7 +206,11 @@ void Sender::request_key() noexcept {
   if (impl_->loads) impl_->loads->request_key();
 }
 
-void Sender::request_rigid_key() noexcept { impl_->rigid.request_key(); }
+void Sender::request_key(std::size_t substream) noexcept {
+  if (substream == 0) impl_->rigid.request_key();
+  else if (substream <= impl_->deformables.size()) impl_->deformables[substream - 1]->request_key();
+  else if (impl_->loads && substream == load_substream(*impl_->scene)) impl_->loads->request_key();
+}
 
 void Sender::acknowledge(std::size_t substream, std::uint64_t number) noexcept {
   if (substream == 0) impl_->rigid.acknowledge(number);

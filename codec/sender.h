@@ -127,7 +127,7 @@ class Sender {
   /// even if every bound holds. The rigid key packet names the objects that have left their initial state; if none has, it is
   /// not sent.
   void request_key() noexcept;
-  void request_rigid_key() noexcept;  ///< the same for the rigid objects alone
+  void request_key(std::size_t substream) noexcept;  ///< the same for one substream
 
   /// Report that the receiver has decoded a packet. Report all of them, in any order: the newest is the next baseline, and objects
   /// that others named are not sent again. Numbers of no packet, or of one long ago, are ignored.

@@ -36,14 +36,31 @@ def largest_rigid(scene: Declaration) -> int:
     return 64 + (296 if scene.driven else 208) * len(scene.moving())
 
 
+def largest_deformable(item) -> int:
+    if item.profile == THESIS:
+        return 96 + (17 + 6 * item.quant_bits) * len(item.rest)
+    return 112 + 16 * item.mode_count + 40 * len(item.rest)
+
+
 def largest_packet(scene: Declaration) -> int:
     """Section 5: bytes that a packet of this scene may have, the number of its substream among them."""
     moving, users = len(scene.moving()), scene.loads.users if scene.loads else 0
     most = [largest_rigid(scene) if moving else 0, 64 + (112 + 48 * users) * moving if scene.loads else 0]
-    for item in scene.deformables:
-        most.append(96 + (17 + 6 * item.quant_bits) * len(item.rest) if item.profile == THESIS else
-                    112 + 16 * item.mode_count + 40 * len(item.rest))
-    return 1 + max(most)
+    return 1 + max(most + [largest_deformable(item) for item in scene.deformables])
+
+
+def may_chain(scene: Declaration, substream: int) -> bool:
+    """Section 4.4: under the policy previous its packets build on the one before."""
+    if not 1 <= substream <= len(scene.deformables):
+        return substream == 0
+    item = scene.deformables[substream - 1]
+    return item.profile != THESIS and not item.layered
+
+
+def largest_chained(scene: Declaration) -> int:
+    has_rigid = scene.moving() or not scene.deformables
+    return 1 + max([largest_rigid(scene) if has_rigid else 0] +
+                   [largest_deformable(item) for i, item in enumerate(scene.deformables, 1) if may_chain(scene, i)])
 
 
 # ---- Sections 4 to 6: one end of an epoch ---------------------------------------------------------------------------
@@ -73,7 +90,8 @@ class Epoch:
         self.packets = self.shapes = 0                      # decoded; of deformable objects
         self.packet_at = -10 ** 9                           # when the last was
         self.policy = PREVIOUS
-        self.held: dict[int, tuple[int, bytes]] = {}        # packets of rigid objects that miss their baseline: when they came
+        # Packets of chains that miss their baseline, by number and substream: when they came.
+        self.held: dict[tuple[int, int], tuple[int, bytes]] = {}
         self.path: Optional[DevicePath] = None              # of the device, where it moves objects
         self.limits = Limits()                              # of the declaration
         self.own: Optional[RigidDecoder] = None             # its packets
@@ -200,9 +218,9 @@ class Epoch:
         before = self.packets
         taken = self.decode_one(now, number, packet)
         if self.packets > before:                           # each may be the baseline of the next
-            for n, (_, waiting) in sorted(self.held.items()):
-                if n in self.held:
-                    self.decode_one(now, n, waiting)
+            for name, (_, waiting) in sorted(self.held.items()):
+                if name in self.held:
+                    self.decode_one(now, name[0], waiting)
         return taken
 
     def decode_one(self, now: int, number: int, packet: bytes) -> bool:
@@ -221,26 +239,25 @@ class Epoch:
         layered = isinstance(decoder, DeformableDecoder) and self.scene.deformables[substream - 1].layered
         if number % 64 == 0 and number == decoder.receiver.newest and not layered:
             self.hash = struct.pack("<BHI", substream, number % (1 << 16), decoder.state_hash() % (1 << 32))
-        if isinstance(decoder, RigidDecoder):
-            self.held = {n: of for n, of in self.held.items() if n > decoder.receiver.newest}
+        self.held = {name: of for name, of in self.held.items() if name[1] != substream or name[0] > decoder.receiver.newest}
         return True
 
     def hold(self, now: int, number: int, packet: bytes, error: StreamError) -> bool:
-        """Section 4.4: a packet of rigid objects waits for its baseline."""
+        """Section 4.4: a packet of a chain waits for its baseline."""
         if self.direction == DOWN or self.policy != PREVIOUS or error.errc != "state":
             return False
-        decoder = self.decoders.substreams[self.decoders.split(packet)[0]]
-        if not isinstance(decoder, RigidDecoder):
+        substream = self.decoders.split(packet)[0]
+        if not may_chain(self.scene, substream):
             return False
-        if number <= decoder.receiver.newest:
+        if number <= self.decoders.substreams[substream].receiver.newest:
             return True                                     # no use any more
-        self.held = {n: of for n, of in self.held.items() if now <= of[0] + LONGEST_HELD}
-        if number in self.held:
+        self.held = {name: of for name, of in self.held.items() if now <= of[0] + LONGEST_HELD}
+        if (number, substream) in self.held:
             return True                                     # here already
-        room = max(BYTES_HELD, 1 + largest_rigid(self.scene))
+        room = max(BYTES_HELD, largest_chained(self.scene))
         if len(self.held) == MOST_HELD or sum(len(p) for _, p in self.held.values()) + len(packet) > room:
             return False
-        self.held[number] = now, packet
+        self.held[number, substream] = now, packet
         return True
 
     def report(self, now: int) -> bytes:

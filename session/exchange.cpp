@@ -14,16 +14,16 @@
 namespace tactus {
 namespace {
 
-constexpr std::uint64_t kSilence = 1'000'000;     // [us] without acknowledgements, at least, before an end sends little
-constexpr std::uint64_t kSeldom = 50'000;         // [us] from datagram to datagram then
-constexpr std::uint64_t kSparing = 1024;          // the wait is this part of the silence at least: numbers last for 17 minutes
-constexpr std::uint32_t kSomeLoss = 65536 / 100;  // above, no acknowledgement waits long
-constexpr std::int64_t kSlowestCopy = 80'000;     // [us] until the other end has the copy of a shape, if it shows later ticks
-constexpr std::uint64_t kLatestShape = 120'000;   // [us] from the first sending of a shape to its copy
-constexpr std::uint64_t kLatestRigid = 400'000;   // [us] the same of rigid objects, at least
-constexpr std::uint64_t kPieceReorder = 16;       // numbers by which pieces may come out of order
-constexpr std::uint64_t kBelated = 20'000;        // [us] a packet that no other waits for has a use after its tick was shown
-constexpr std::int64_t kLongTrip = 80'000;        // [us] from which on there is no time for a second round of copies
+constexpr std::uint64_t kSilence = 1'000'000;      // [us] without acknowledgements, at least, before an end sends little
+constexpr std::uint64_t kSeldom = 50'000;          // [us] from datagram to datagram then
+constexpr std::uint64_t kSparing = 1024;           // the wait is this part of the silence at least: numbers last for 17 minutes
+constexpr std::uint32_t kSomeLoss = 65536 / 100;   // above, no acknowledgement waits long
+constexpr std::int64_t kSlowestCopy = 80'000;      // [us] until the other end has the copy of a shape, if it shows later ticks
+constexpr std::uint64_t kLatestShape = 120'000;    // [us] from the first sending of a shape to its copy
+constexpr std::uint64_t kLatestChained = 400'000;  // [us] the same of a packet that others wait for, at least
+constexpr std::uint64_t kPieceReorder = 16;        // numbers by which pieces may come out of order
+constexpr std::uint64_t kBelated = 20'000;         // [us] a packet that no other waits for has a use after its tick was shown
+constexpr std::int64_t kLongTrip = 80'000;         // [us] from which on there is no time for a second round of copies
 constexpr std::uint64_t kInitialAckTimeout = 250'000;  // [us] while no round trip is known
 
 std::size_t largest_packet(const Scene& scene) {
@@ -33,22 +33,31 @@ std::size_t largest_packet(const Scene& scene) {
   return out + 1;  // the number of its substream
 }
 
+/// 0: none may be.
+std::size_t largest_chained(const Scene& scene) {
+  const bool has_rigid = !scene.moving().empty() || scene.deformables.empty();  // a substream of them, with objects or none
+  std::size_t out = has_rigid ? max_rigid_packet(scene) + 1 : 0;
+  for (std::size_t i = 0; i < scene.deformables.size(); ++i)
+    if (may_chain(scene, i + 1)) out = std::max(out, max_packet(scene, scene.deformables[i]) + 1);
+  return out;
+}
+
 }  // namespace
 
 void Exchange::send_with(Sender coder, bool repairs) {
   repairs_ = repairs;
   fixed_playout_ = playout_ > 0;
   if (direction_ == Direction::down && (copies_rigid() || !coder.scene()->deformables.empty()))
-    resends_.emplace(largest_packet(*coder.scene()));
+    resends_.emplace(largest_packet(*coder.scene()), coder.scene()->deformables.size() + 2);
   sender.emplace(std::move(coder));
 }
 
 void Exchange::receive_with(Receiver decoder) {
   fragments_ = Fragments(largest_packet(*decoder.scene()));
   const Scene& scene = *decoder.scene();
-  const bool has_rigid = !scene.moving().empty() || scene.deformables.empty();  // a substream of them, with objects or none
-  if (direction_ == Direction::up && has_rigid) held_.emplace(max_rigid_packet(scene) + 1);
+  if (direction_ == Direction::up) held_.emplace(largest_chained(scene));
   newest_.assign(scene.deformables.size() + 2, 0);
+  heard_ = newest_;
   receiver.emplace(std::move(decoder));
 }
 
@@ -171,12 +180,13 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
     ++traffic_.packets_refused;
     return false;
   }
-  const bool is_rigid = decoded->substream == 0;
-  if (is_of_deformable(*receiver->scene(), decoded->substream)) reading.ack_timing = AckTiming::now;
-  if (is_rigid && number < std::min(rigid_heard_, reading.heard.number)) reading.heard.is_copy = true;
+  const std::size_t substream = decoded->substream;
+  if (is_of_deformable(*receiver->scene(), substream)) reading.ack_timing = AckTiming::now;
+  if ((substream == 0 || waits_for(substream)) && number < std::min(heard_[substream], reading.heard.number))
+    reading.heard.is_copy = true;
   if (!reading.heard.is_copy) reading.heard.oldest = std::min(reading.heard.oldest.value_or(decoded->tick), decoded->tick);
   took(*decoded, packet.size(), reading);
-  if (held_ && is_rigid && !held_->empty()) take_held(reading);
+  if (held_ && !held_->empty()) take_held(reading);
   return true;
 }
 
@@ -184,38 +194,41 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
 bool Exchange::took(const DecodedPacket& decoded, std::size_t size, Reading& reading) noexcept {
   ++traffic_.packets_heard;
   traffic_.payload_heard += size;
-  if (direction_ == Direction::up && decoded.number > newest_[decoded.substream]) {
+  if (decoded.number > newest_[decoded.substream]) {
     newest_[decoded.substream] = decoded.number;
-    if (decoded.number % kHashEvery == 0 && decoded.layer == Layer::all) {
+    if (direction_ == Direction::up && decoded.number % kHashEvery == 0 && decoded.layer == Layer::all) {
       const auto hash = static_cast<std::uint32_t>(receiver->state_hash(decoded.substream));
       reading.heard.hash =
           HashPart{static_cast<std::uint8_t>(decoded.substream), static_cast<std::uint16_t>(decoded.number), hash};
     }
   }
-  if (decoded.substream != 0) return true;
-  newest_rigid_ = std::max(newest_rigid_, decoded.number);
-  rigid_heard_ = std::max(rigid_heard_, newest_rigid_);
-  if (repaired_ && held_ && decoded.baseline > 0)
+  heard_[decoded.substream] = std::max(heard_[decoded.substream], decoded.number);
+  if (decoded.substream == 0 && repaired_ && held_ && decoded.baseline > 0)
     for (std::uint64_t number = decoded.baseline + 1; number < decoded.number; ++number) receiver->skip_number(number);
   return true;
 }
 
-/// A packet of rigid objects whose baseline is not there waits for it. One that is older than what is decoded is no use any more.
+/// Packets of this substream that come build on the one before.
+bool Exchange::waits_for(std::uint64_t substream) const noexcept {
+  return held_ && repaired_ && may_chain(*receiver->scene(), substream);
+}
+
+/// A chained packet whose baseline is not there waits for it. One that is older than what is decoded is no use any more.
 bool Exchange::hold(std::uint64_t number, std::span<const std::uint8_t> packet, const Error& error, std::uint64_t now) noexcept {
-  if (!held_ || !repaired_ || number == 0 || error.code != Errc::state) return false;
+  if (number == 0 || error.code != Errc::state) return false;
   const auto part = split_substream(*receiver->scene(), packet);
-  if (!part || part->substream != 0) return false;
-  if (number <= newest_rigid_) return true;
+  if (!part || !waits_for(part->substream)) return false;
+  if (number <= newest_[part->substream]) return true;
   held_->remove_if([now](const HeldPackets::Held& held) { return now > held.at + HeldPackets::kLongest; });
-  if (!held_->hold(number, packet, now)) return false;
-  rigid_heard_ = std::max(rigid_heard_, number);
+  if (!held_->hold(number, part->substream, packet, now)) return false;
+  heard_[part->substream] = std::max(heard_[part->substream], number);
   return true;
 }
 
 /// Those whose baseline has come, in the order of their numbers: each may be the baseline of the next.
 void Exchange::take_held(Reading& reading) noexcept {
   held_->remove_if([&](const HeldPackets::Held& held) {
-    if (held.number <= newest_rigid_) return true;  // older than a key packet
+    if (held.number <= newest_[held.substream]) return true;  // older than a key packet
     const auto decoded = receiver->push(held.number, held_->bytes(held));
     if (!decoded) {
       const bool waits = decoded.error().code == Errc::state;
@@ -292,7 +305,7 @@ void Exchange::give_up() noexcept {
     const Packet& packet = packets_[next_packet_];
     ++traffic_.packets_held;
     wants_key_ = wants_key_ || packet.layer != Layer::all;
-    wants_chain_ = wants_chain_ || (repairs_ && packet.substream == 0);
+    if (chains(packet.substream)) resends_->break_chain(packet.substream);
   }
   packets_ = {};
   next_packet_ = next_fragment_ = 0;
@@ -334,7 +347,7 @@ Result<std::span<const Packet>> Exchange::submit(std::uint64_t now, std::int64_t
     sender->request_key();
     key_wanted_at_ = now;
   }
-  begin_chain(now);
+  begin_chains(now);
   TACTUS_TRY(packets_, sender->encode(tick, truth, *number));
   for (const Packet& packet : packets_) newest_packet_ = std::max(newest_packet_, packet.number);
   if (path && direction_ == Direction::up && !packets_.empty()) path->add(packets_[0].number, sender->object(0));
@@ -382,12 +395,16 @@ bool Exchange::may_copy(std::uint64_t substream) const noexcept {
   return substream == 0 ? repairs_ || rigid_comes_in_time() : is_of_deformable(*sender->scene(), substream);
 }
 
+/// Packets of this substream that go build on the one before.
+bool Exchange::chains(std::uint64_t substream) const noexcept { return repairs_ && may_chain(*sender->scene(), substream); }
+
 std::uint16_t Exchange::keep(std::uint64_t number, const Packet& packet, const Resends::Portion& portion,
                              std::uint64_t now) noexcept {
   traffic_.payload_sent += portion.bytes.size();
   if (!resends_ || !may_copy(packet.substream) || packet.layer != Layer::all) return Resends::kNone;
-  if (packet.substream == 0 && packet.key && portion.index == 0) resends_->settle_rigid(packet.number);
-  return resends_->keep(number, packet, portion, now);
+  const bool is_chained = chains(packet.substream);
+  if (is_chained && packet.key && portion.index == 0) resends_->settle_chain(packet.substream, packet.number);
+  return resends_->keep(number, packet, portion, now, is_chained);
 }
 
 /// Or else clients would show the past for nothing.
@@ -397,19 +414,19 @@ bool Exchange::shapes_come_in_time() const noexcept {
   return trip && trip->smoothed + 4 * trip->variation + trip->least / 2 <= most;
 }
 
-/// A shape has a use until its tick is shown, and a little longer a packet of rigid objects that no other waits for. Otherwise all of them
-/// wait for one that is missing; but after an outage a key packet is there sooner than all of them.
+/// A shape has a use until its tick is shown, and a little longer a packet of rigid objects. In a chain all wait for one that is missing; but
+/// after an outage a key packet is there sooner than all of them.
 Resends::Latest Exchange::latest() const noexcept {
   const auto one_way = static_cast<std::uint64_t>(sent_.round_trip()->least / 2);
-  return {.rigid = repairs_ ? std::max({kLatestRigid, 4 * ack_timeout(), 2 * playout_}) : one_way + playout_ + kBelated,
+  return {.chained = std::max({kLatestChained, 4 * ack_timeout(), 2 * playout_}),
+          .rigid = one_way + playout_ + kBelated,
           .shape = shapes_come_in_time() ? std::max(kLatestShape, playout_) : 0,
           .one_way = one_way};
 }
 
 /// Where all packets wait for one whose copies are lost, too, and another round takes long, there are more of them.
 unsigned Exchange::copies_of(std::uint64_t substream) const noexcept {
-  if (substream != 0) return 2;
-  if (!repairs_) return 1;
+  if (!chains(substream)) return substream == 0 ? 1 : 2;
   return sent_.round_trip() && sent_.round_trip()->least >= kLongTrip ? 3 : 2;
 }
 
@@ -438,15 +455,15 @@ void Exchange::watch_tail(std::uint64_t now) noexcept {
 }
 
 void Exchange::want_key(std::uint64_t now) noexcept {
-  if (now >= chain_at_ + ack_timeout()) wants_chain_ = true;
+  if (now >= chain_at_ + ack_timeout()) wants_chains_ = true;
 }
 
-void Exchange::begin_chain(std::uint64_t now) noexcept {
-  if (resends_ && resends_->is_broken() && repairs_) wants_chain_ = true;
-  if (repairs_ && is_cut_off(now)) wants_chain_ = true;  // the first that gets through is then enough
-  if (!std::exchange(wants_chain_, false)) return;
-  sender->request_rigid_key();
-  chain_at_ = now;
+void Exchange::begin_chains(std::uint64_t now) noexcept {
+  const bool all = std::exchange(wants_chains_, false) || is_cut_off(now);  // then the first that gets through is enough
+  if (!repairs_) return;
+  for (std::size_t i = 0; all && i <= sender->scene()->deformables.size(); ++i)
+    if (chains(i)) sender->request_key(i), chain_at_ = now;
+  while (const auto broken = resends_->poll_broken()) sender->request_key(*broken), chain_at_ = now;
 }
 
 /// As many as fit of the packets that are lost and not too old, or one fragment.

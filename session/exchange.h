@@ -40,7 +40,7 @@ class Exchange {
   std::optional<PieceSender> pieces;  ///< of the declaration, until all have arrived
   std::shared_ptr<DevicePath> path;   ///< of the device whose packets go up; none: it drives nothing
 
-  /// in   repairs  packets of rigid objects build on the one before: what is lost goes again until it arrives, or they begin anew
+  /// in   repairs  packets build on the one before, where they may: what is lost goes again until it arrives, or they begin anew
   void send_with(Sender coder, bool repairs = false);  ///< allocates
   void receive_with(Receiver decoder);                 ///< allocates, to hold packets and to put fragments together
 
@@ -51,7 +51,7 @@ class Exchange {
     std::uint64_t number = 0;            ///< of the datagram
     std::optional<std::int64_t> tick;    ///< newest of the packets that were decoded
     std::optional<std::int64_t> oldest;  ///< oldest of them
-    bool is_copy = false;                ///< one of rigid objects was a copy: its tick says nothing about the delay
+    bool is_copy = false;                ///< one that others wait for was a copy: its tick says nothing about the delay
     /// Of the packets that were held until now, those with the shortest and the longest delay.
     struct Arrival {
       std::int64_t tick = 0;
@@ -125,10 +125,10 @@ class Exchange {
   std::optional<std::uint64_t> pieces_due() const noexcept;  ///< [us] when that is; nothing: none is in flight
   /// [us] since when the first packet that is held waits; nothing: none is held.
   std::optional<std::uint64_t> waits_since() const noexcept { return held_ ? held_->waits_since() : std::nullopt; }
-  /// The client has asked for a key packet of the rigid objects. It gets one, but not more often than one can be answered.
+  /// The client has asked for key packets. It gets them, but not more often than one can be answered.
   void want_key(std::uint64_t now) noexcept;
   void set_playout(std::uint64_t delay) noexcept { playout_ = delay; }  ///< [us] of the client, as it has reported
-  /// On what packets of rigid objects that come build: numbers without one are then not missing.
+  /// On what packets that come build: numbers without one of rigid objects are then not missing.
   void expect(bool repaired) noexcept { repaired_ = repaired; }
   bool is_repaired() const noexcept { return repaired_; }
   std::uint64_t ack_timeout() const noexcept;  ///< [us] after which an acknowledgement should have come
@@ -183,6 +183,8 @@ class Exchange {
   bool add_fragment(const Packet& packet, std::uint64_t number, std::uint64_t now) noexcept;
   std::uint16_t keep(std::uint64_t number, const Packet& packet, const Resends::Portion& portion, std::uint64_t now) noexcept;
   bool shapes_come_in_time() const noexcept;
+  bool chains(std::uint64_t substream) const noexcept;
+  bool waits_for(std::uint64_t substream) const noexcept;
   bool copies_rigid() const noexcept { return repairs_ || fixed_playout_; }
   bool rigid_comes_in_time() const noexcept;
   bool may_copy(std::uint64_t substream) const noexcept;
@@ -191,7 +193,7 @@ class Exchange {
   void lose(std::uint64_t number, std::uint64_t now) noexcept;
   std::optional<std::uint64_t> tail_due() const noexcept;
   void watch_tail(std::uint64_t now) noexcept;
-  void begin_chain(std::uint64_t now) noexcept;
+  void begin_chains(std::uint64_t now) noexcept;
   bool is_cut_off(std::uint64_t now) const noexcept;
   const Resends::Kept* next_copy(std::uint64_t now) noexcept;
   bool add_copies(std::uint64_t number, std::uint64_t now) noexcept;
@@ -209,16 +211,15 @@ class Exchange {
   SentFragments sent_fragments_;
   std::optional<Resends> resends_;     // none: no packet goes twice
   std::optional<HeldPackets> held_;    // none: what lacks its baseline is refused
-  std::vector<std::uint64_t> newest_;  // at a client: number of the newest packet of each substream
-  std::uint64_t newest_rigid_ = 0;     // number of the newest packet of rigid objects that was decoded
+  std::vector<std::uint64_t> newest_;  // by substream, at a receiver: number of the newest packet that was decoded
+  std::vector<std::uint64_t> heard_;   // the same, or that is held
   std::uint64_t newest_packet_ = 0;    // highest number that a packet was given
-  std::uint64_t rigid_heard_ = 0;      // the same, or that is held
   bool repairs_ = false, repaired_ = true, waits_ = false;
   bool fixed_playout_ = false;       // by its user: known before the first packet
   std::uint64_t playout_ = 0;        // [us] of the client
   std::uint64_t tail_at_ = 0;        // [us] when the newest ack-eliciting datagram was last taken for lost
-  bool wants_chain_ = false;         // packets of rigid objects must begin anew
-  std::uint64_t chain_at_ = 0;       // [us] when they did
+  bool wants_chains_ = false;        // chains must begin anew
+  std::uint64_t chain_at_ = 0;       // [us] when one did
   std::span<const Packet> packets_;  // of the last submit()
   std::size_t next_packet_ = 0, next_fragment_ = 0;
   std::uint64_t heard_at_, sent_at_;

@@ -132,9 +132,10 @@ constexpr std::uint64_t kApart = 10'000;  // [us]
 
 }  // namespace
 
-Resends::Resends(std::size_t largest)
+Resends::Resends(std::size_t largest, std::size_t substreams)
     : kept_(kKept + std::min((largest + kFragmentSize - 1) / kFragmentSize, kMostFragments)),
-      bytes_(kBytes + std::min(largest, kFragmentSize * kMostFragments)) {
+      bytes_(kBytes + std::min(largest, kFragmentSize * kMostFragments)),
+      broken_(substreams, 0) {
   waiting_.reserve(kept_.size());
 }
 
@@ -151,14 +152,15 @@ void Resends::settle(Kept& kept) noexcept {
 /// The oldest is dropped.
 void Resends::pop() noexcept {
   Kept& oldest = kept_[first_];
-  is_broken_ = is_broken_ || (!oldest.is_settled && oldest.substream == 0);
+  if (!oldest.is_settled && oldest.is_chained) break_chain(oldest.substream);
   settle(oldest);
   oldest.datagrams = {};
   first_ = (first_ + 1) % kept_.size();
   --count_;
 }
 
-std::uint16_t Resends::keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now) noexcept {
+std::uint16_t Resends::keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now,
+                            bool is_chained) noexcept {
   const std::size_t size = portion.bytes.size(), capacity = bytes_.size();
   if (end_ % capacity + size > capacity) end_ += capacity - end_ % capacity;
   while (count_ == kept_.size() || (count_ > 0 && end_ + size > kept_[first_].begin + capacity)) pop();
@@ -173,6 +175,7 @@ std::uint16_t Resends::keep(std::uint64_t datagram, const Packet& packet, const 
                  .count = static_cast<std::uint16_t>(portion.count),
                  .size = static_cast<std::uint16_t>(size),
                  .copies = 0,
+                 .is_chained = is_chained,
                  .is_settled = false};
   std::ranges::copy(portion.bytes, bytes_.begin() + static_cast<std::ptrdiff_t>(end_ % capacity));
   end_ += size;
@@ -198,9 +201,9 @@ const Resends::Kept* Resends::next(std::uint64_t now, const Latest& latest) noex
   const Kept* out = nullptr;
   for (std::size_t i = 0; i < waiting_.size();) {
     Kept& kept = kept_[waiting_[i]];
-    const bool is_rigid = kept.substream == 0;
-    if (now + latest.one_way > kept.time + (is_rigid ? latest.rigid : latest.shape)) {
-      is_broken_ = is_broken_ || is_rigid;
+    const std::uint64_t latest_after = kept.is_chained ? latest.chained : kept.substream == 0 ? latest.rigid : latest.shape;
+    if (now + latest.one_way > kept.time + latest_after) {
+      if (kept.is_chained) break_chain(kept.substream);
       settle(kept);
       continue;
     }
@@ -227,12 +230,24 @@ std::optional<std::uint64_t> Resends::due() const noexcept {
   return out;
 }
 
-void Resends::settle_rigid(std::uint64_t number) noexcept {
+void Resends::break_chain(std::size_t substream) noexcept {
+  if (std::exchange(broken_[substream], std::uint8_t{1}) == 0) ++count_broken_;
+}
+
+std::optional<std::size_t> Resends::poll_broken() noexcept {
+  if (count_broken_ == 0) return std::nullopt;
+  const auto broken = std::ranges::find(broken_, std::uint8_t{1});
+  *broken = 0;
+  --count_broken_;
+  return static_cast<std::size_t>(broken - broken_.begin());
+}
+
+void Resends::settle_chain(std::size_t substream, std::uint64_t number) noexcept {
   for (std::size_t i = 0; i < count_; ++i) {
     Kept& kept = kept_[(first_ + i) % kept_.size()];
-    if (kept.substream == 0 && kept.number < number) settle(kept);
+    if (kept.substream == substream && kept.number < number) settle(kept);
   }
-  is_broken_ = false;
+  if (std::exchange(broken_[substream], std::uint8_t{0}) == 1) --count_broken_;
 }
 
 // ==== held packets ====
@@ -252,14 +267,16 @@ void HeldPackets::compact() noexcept {
   }
 }
 
-bool HeldPackets::hold(std::uint64_t number, std::span<const std::uint8_t> packet, std::uint64_t now) noexcept {
-  const auto slot = std::ranges::lower_bound(held_, number, {}, &Held::number);
-  if (slot != held_.end() && slot->number == number) return true;
+bool HeldPackets::hold(std::uint64_t number, std::size_t substream, std::span<const std::uint8_t> packet,
+                       std::uint64_t now) noexcept {
+  const auto name = [](const Held& held) { return std::pair(held.number, held.substream); };
+  const auto slot = std::ranges::lower_bound(held_, std::pair(number, substream), {}, name);
+  if (slot != held_.end() && name(*slot) == std::pair(number, substream)) return true;
   if (held_.size() == kMost) return false;
   if (end_ + packet.size() > bytes_.size()) compact();
   if (end_ + packet.size() > bytes_.size()) return false;
   std::ranges::copy(packet, bytes_.begin() + static_cast<std::ptrdiff_t>(end_));
-  held_.insert(slot, {number, now, end_, packet.size()});
+  held_.insert(slot, {number, now, end_, packet.size(), substream});
   end_ += packet.size();
   return true;
 }

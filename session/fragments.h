@@ -186,19 +186,23 @@ class Resends {
     std::uint64_t begin;                          // of its bytes
     std::uint16_t substream, index, count, size;  // index, count: as in Portion
     std::uint8_t copies;                          // that are to go
+    bool is_chained;                              // the packets of its substream after it build on it
     bool is_settled;                              // it has arrived, or nobody needs it any more
   };
   /// [us] from the first sending of a packet to the arrival of its copy, at most.
   struct Latest {
-    std::uint64_t rigid = 0, shape = 0;
-    std::uint64_t one_way = 0;  ///< from here to the other end
+    std::uint64_t chained = 0;           ///< of those that build on each other
+    std::uint64_t rigid = 0, shape = 0;  ///< of others
+    std::uint64_t one_way = 0;           ///< from here to the other end
   };
 
   /// Allocates for kKept datagrams of 64 KiB in all and one packet more.   in  largest  packet [bytes]
-  explicit Resends(std::size_t largest);
+  explicit Resends(std::size_t largest, std::size_t substreams = 1);
 
+  /// in   is_chained  the packets of its substream build on each other
   /// out  its slot, for arrived() and lost() of the datagram
-  std::uint16_t keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now) noexcept;
+  std::uint16_t keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now,
+                     bool is_chained) noexcept;
   /// The datagram that brought what has this slot.
   void arrived(std::uint16_t slot, std::uint64_t datagram) noexcept;
   /// in   copies  that should go, 10 ms apart; none while a newer datagram with it is in flight
@@ -212,10 +216,11 @@ class Resends {
   std::uint16_t sent(const Kept& copy, std::uint64_t datagram, std::uint64_t now) noexcept;
   std::optional<std::uint64_t> due() const noexcept;  ///< [us] when the next copy may go; nothing: none is to go
 
-  /// A packet of the rigid objects will not arrive, or so late that it is no use: all after it wait. True once.
-  bool is_broken() noexcept { return std::exchange(is_broken_, false); }
-  /// Rigid packets below this number need not arrive any more.   time O(kept)
-  void settle_rigid(std::uint64_t number) noexcept;
+  /// A chained packet of this substream will not arrive, or so late that it is no use: all after it wait. Each once.
+  std::optional<std::size_t> poll_broken() noexcept;
+  void break_chain(std::size_t substream) noexcept;
+  /// The chain begins anew: packets of this substream below this number need not arrive any more.   time O(kept)
+  void settle_chain(std::size_t substream, std::uint64_t number) noexcept;
 
  private:
   static constexpr std::size_t kKept = 1024, kBytes = 65536;
@@ -227,12 +232,13 @@ class Resends {
   UntouchedBytes bytes_;
   std::vector<std::uint16_t> waiting_;  // slots of what has copies to go
   std::size_t first_ = 0, count_ = 0;
-  std::uint64_t end_ = 0;  // of the bytes
-  bool is_broken_ = false;
+  std::uint64_t end_ = 0;             // of the bytes
+  std::vector<std::uint8_t> broken_;  // by substream
+  std::size_t count_broken_ = 0;
 };
 
 // ==== held packets ====
-// Packets of the rigid objects whose baseline is not there yet. spec/70-session.md section 4.4.
+// Chained packets whose baseline is not there yet. spec/70-session.md section 4.4.
 
 class HeldPackets {
  public:
@@ -243,6 +249,7 @@ class HeldPackets {
     std::uint64_t number = 0;
     std::uint64_t at = 0;  ///< [us] when it came
     std::size_t begin = 0, size = 0;
+    std::size_t substream = 0;
   };
 
   explicit HeldPackets(std::size_t largest) : bytes_(std::max(kBytes, largest)) {
@@ -251,10 +258,10 @@ class HeldPackets {
   }
 
   /// False: there is no room.   time O(held)
-  bool hold(std::uint64_t number, std::span<const std::uint8_t> packet, std::uint64_t now) noexcept;
+  bool hold(std::uint64_t number, std::size_t substream, std::span<const std::uint8_t> packet, std::uint64_t now) noexcept;
   bool empty() const noexcept { return held_.empty(); }
   std::size_t size() const noexcept { return held_.size(); }
-  /// What is held, by number.
+  /// What is held, by number and substream.
   const Held& operator[](std::size_t i) const noexcept { return held_[i]; }
   std::span<const std::uint8_t> bytes(const Held& held) const noexcept {
     return std::span(bytes_).subspan(held.begin, held.size);

@@ -242,7 +242,7 @@ bool ServerConnection::take(std::uint64_t now, ClientParts& parts) {
   line_.begin(now);
   bucket_.set_rate(most_rate_, now);
   if (parts.receiver) {
-    exchange_->receiver = std::move(parts.receiver);
+    exchange_->receive_with(std::move(*parts.receiver));
     const auto& limits = served_.scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual;
     device_clock_.emplace(served_.scene->tick_rate, PlayoutOptions{.fixed = 0}, static_cast<std::int64_t>(limits.stale));
     exchange_->path = std::move(parts.path);

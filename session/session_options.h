@@ -101,10 +101,10 @@ struct PlayoutOptions {
   std::optional<std::uint32_t> fixed{};
 };
 
-/// What the packets of rigid objects to a client build on, and so what a loss costs. spec/70-session.md section 4.4
+/// What the packets to a client build on, and so what a loss costs. Layers and profile thesis are as with `prompt`. spec/70-session.md section 4.4
 enum class LossPolicy : std::uint8_t {
   by_role,  ///< repair for observers, unless they fix a playout delay too short for it; prompt for participants: a hand feels the delay
-  repair,  ///< on the packet before; what is lost goes again, and the client shows the past by a round trip more: half the bits
+  repair,  ///< on the packet before; what is lost goes again, and the client shows the past by a round trip more: a half to a third of the bits
   prompt,  ///< on what was acknowledged; nothing waits for what is lost, and the client interpolates over it
 };
 

@@ -10,8 +10,8 @@ enum class Baseline : std::uint8_t {
   previous,      ///< the state of the packet before: fewest bits; after a loss receivers wait for a key packet
   acknowledged,  ///< the newest acknowledged state, at most Scene::baseline_span packets ago: a loss interrupts nothing.
                  ///< Layered objects use `previous` in any case: each layer takes the other one from the packet before
-  repaired,  ///< `previous` for rigid objects, `acknowledged` for the others: for a transport that sends lost packets again, and a
-             ///< receiver that holds those whose baseline it lacks
+  repaired,  ///< `previous` for rigid objects and for deformable ones of profile main without layers, `acknowledged` for the others: for a
+             ///< transport that sends lost packets again, and a receiver that holds those whose baseline it lacks
 };
 
 /// What the link to the receiver and back does, as measured. It decides when Baseline::acknowledged sends a state again.

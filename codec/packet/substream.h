@@ -30,6 +30,15 @@ inline bool is_of_deformable(const Scene& scene, std::size_t substream) noexcept
   return substream > 0 && substream <= scene.deformables.size();
 }
 
+/// Where lost packets go again, those of this substream may build on the one before: all but layers, of which each takes the other from its
+/// baseline, those of profile thesis, and loads.
+inline bool may_chain(const Scene& scene, std::size_t substream) noexcept {
+  if (substream == 0) return true;
+  if (!is_of_deformable(scene, substream)) return false;
+  const DeformableObject& object = scene.deformables[substream - 1];
+  return object.profile == DeformableProfile::main && !object.layered;
+}
+
 /// Split off the substream number. Without a number, and in a scene where nothing can move, all bytes are the packet.
 /// err  truncated R-PKT-6 the number is missing; invalid R-PKT-6 there is no such substream.
 Result<SubstreamPacket> split_substream(const Scene& scene, std::span<const std::uint8_t> packet) noexcept;

@@ -233,14 +233,14 @@ TEST(LossBursts, WhateverComesItIsWithinItsLimit) {
 
 // ==== session resends ====
 
-constexpr std::uint64_t kMillisecond = 1000;                                               // [us]
-constexpr Resends::Latest kShapes{.rigid = 400'000, .shape = 120'000, .one_way = 20'000};  // [us]
+constexpr std::uint64_t kMillisecond = 1000;                                                                   // [us]
+constexpr Resends::Latest kShapes{.chained = 400'000, .rigid = 120'000, .shape = 120'000, .one_way = 20'000};  // [us]
 
 struct Sent {
   explicit Sent(std::size_t size = 40, std::size_t of = 2) : bytes(size, 7), substream(of) {}
   Packet packet(std::uint64_t number) const { return {.bytes = bytes, .substream = substream, .number = number}; }
   std::uint16_t keep(Resends& in, std::uint64_t datagram, std::uint64_t number, std::uint64_t now) const {
-    return in.keep(datagram, packet(number), {.bytes = bytes}, now);
+    return in.keep(datagram, packet(number), {.bytes = bytes}, now, substream == 0);
   }
   std::vector<std::uint8_t> bytes;
   std::size_t substream;
@@ -305,29 +305,29 @@ TEST(Resends, OldPacketsDoNotGo) {
   EXPECT_NE(resends.next(100 * kMillisecond, kShapes), nullptr) << "it arrives 120 ms after the first";
   EXPECT_EQ(late.next(100 * kMillisecond + 1, kShapes), nullptr);
   EXPECT_FALSE(late.due());
-  EXPECT_FALSE(late.is_broken()) << "no other shape waits for it";
+  EXPECT_FALSE(late.poll_broken()) << "no other shape waits for it";
 }
 
-/// One of the rigid objects that comes no more breaks the chain, unless a key packet has made it old.
-TEST(Resends, KnowWhenTheRigidObjectsMustBeginAnew) {
+/// A chained packet that comes no more breaks the chain, unless a key packet has made it old.
+TEST(Resends, KnowWhenAChainMustBeginAnew) {
   Resends resends(0);
   const Sent rigid(40, 0);
   const std::uint16_t slot = rigid.keep(resends, 1, 1, 0);
   resends.lost(slot, 1, 300 * kMillisecond, 2);
   Resends late = resends, renewed = resends;
   EXPECT_NE(resends.next(380 * kMillisecond, kShapes), nullptr);
-  EXPECT_FALSE(resends.is_broken());
+  EXPECT_FALSE(resends.poll_broken());
   EXPECT_EQ(late.next(380 * kMillisecond + 1, kShapes), nullptr);
-  EXPECT_TRUE(late.is_broken());
-  EXPECT_FALSE(late.is_broken()) << "it says so once";
-  renewed.settle_rigid(2);
+  EXPECT_EQ(late.poll_broken(), 0u);
+  EXPECT_FALSE(late.poll_broken()) << "it says so once";
+  renewed.settle_chain(0, 2);
   EXPECT_EQ(renewed.next(390 * kMillisecond, kShapes), nullptr);
-  EXPECT_FALSE(renewed.is_broken());
+  EXPECT_FALSE(renewed.poll_broken());
   Resends full(0);  // 64 KiB: what is dropped has not arrived
   for (std::uint64_t n = 1; n <= 65; ++n) Sent(1000, 0).keep(full, n, n, 0);
-  EXPECT_FALSE(full.is_broken());
+  EXPECT_FALSE(full.poll_broken());
   Sent(1000, 0).keep(full, 66, 66, 0);
-  EXPECT_TRUE(full.is_broken());
+  EXPECT_EQ(full.poll_broken(), 0u);
 }
 
 TEST(Resends, AllPacketsOfADatagramGoTheOldestFirst) {
@@ -349,7 +349,7 @@ TEST(Resends, FragmentsGoByThemselves) {
   const Sent sent(2 * 1150 + 7);
   std::uint16_t last = 0;
   for (std::size_t i = 0; i < 3; ++i)
-    last = resends.keep(20 + i, sent.packet(4), {i, 3, std::span(sent.bytes).subspan(i * 1150, i < 2 ? 1150 : 7)}, 0);
+    last = resends.keep(20 + i, sent.packet(4), {i, 3, std::span(sent.bytes).subspan(i * 1150, i < 2 ? 1150 : 7)}, 0, false);
   resends.lost(last, 22, kMillisecond, 1);
   const auto* copy = resends.next(kMillisecond, kShapes);
   ASSERT_NE(copy, nullptr);
@@ -401,7 +401,7 @@ TEST(HeldPackets, AreInOrderOfTheirNumbers) {
   EXPECT_FALSE(held.waits_since());
   for (const std::uint64_t number : {7u, 3u, 9u, 3u}) {
     const std::vector<std::uint8_t> bytes(static_cast<std::size_t>(number), static_cast<std::uint8_t>(number));
-    EXPECT_TRUE(held.hold(number, bytes, 100 - number));
+    EXPECT_TRUE(held.hold(number, 0, bytes, 100 - number));
   }
   ASSERT_EQ(held.size(), 3u) << "a repeated one is held once";
   for (std::size_t i = 0; const std::uint64_t number : {3u, 7u, 9u}) {
@@ -421,10 +421,10 @@ TEST(HeldPackets, AreBounded) {
   HeldPackets small(100), large(100'000), held(1);
   const std::uint64_t before = testing::allocated_bytes();
   const std::array<std::uint8_t, 1000> bytes{};
-  for (std::uint64_t n = 1; n <= 1024; ++n) EXPECT_TRUE(small.hold(n, std::span(bytes).first(1), 0)) << n;
-  EXPECT_FALSE(small.hold(1025, std::span(bytes).first(1), 0));
-  for (std::uint64_t n = 1; n <= 100; ++n) EXPECT_TRUE(large.hold(n, bytes, 0)) << n;
-  EXPECT_FALSE(large.hold(101, bytes, 0));
+  for (std::uint64_t n = 1; n <= 1024; ++n) EXPECT_TRUE(small.hold(n, 0, std::span(bytes).first(1), 0)) << n;
+  EXPECT_FALSE(small.hold(1025, 0, std::span(bytes).first(1), 0));
+  for (std::uint64_t n = 1; n <= 100; ++n) EXPECT_TRUE(large.hold(n, 0, bytes, 0)) << n;
+  EXPECT_FALSE(large.hold(101, 0, bytes, 0));
   std::mt19937_64 random(2);
   std::array<std::uint8_t, 600> sized{};
   std::uint64_t kept = 0;
@@ -432,7 +432,7 @@ TEST(HeldPackets, AreBounded) {
     const std::size_t size = 1 + random() % sized.size();
     std::ranges::fill(sized, static_cast<std::uint8_t>(n));
     const std::size_t all = held.size();
-    if (held.hold(n, std::span(sized).first(size), n)) ++kept;
+    if (held.hold(n, 0, std::span(sized).first(size), n)) ++kept;
     else EXPECT_GT(all * 600 + 600, HeldPackets::kBytes);
     if (random() % 3 == 0) held.remove_if([&](const HeldPackets::Held& one) { return one.number % 7 == random() % 7; });
     for (std::size_t i = 0; i < held.size(); i += 17)

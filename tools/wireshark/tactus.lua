@@ -87,7 +87,7 @@ field("tick_mapping.offset", ProtoField.int64, "Ticks of the server less those o
 field("piece.index", u64, "Index", base.DEC)
 field("piece.data", raw, "Bytes of the declaration")
 field("piece.received", u64, "Bytes of the declaration so far", base.DEC)
-field("baselines.policy", u8, "What packets of rigid objects build on", base.DEC, { [0] = "the packet before", "acknowledged packets" })
+field("baselines.policy", u8, "What packets down build on", base.DEC, { [0] = "the packet before", "acknowledged packets" })
 field("report.delay", u64, "Playout delay [ms]", base.DEC)
 field("report.key", u8, "Wants a key packet")
 field("state.live", u8, "Live: holds the declaration, wants packets")
