@@ -71,6 +71,7 @@ std::int64_t LossBursts::bridge(std::int64_t longest, std::uint64_t now) noexcep
 namespace {
 
 constexpr std::int64_t kSlack = 30'000, kLeastSlack = 10'000;  // [us]
+constexpr std::int64_t kPromptSlack = 2'000;                   // [us] both where nothing is late and hardly anything lost
 constexpr std::int64_t kLongestBurst = 150'000;                // [us]
 constexpr std::uint64_t kAdaptEvery = 100'000;                 // [us]
 constexpr std::int64_t kShrink = 100;                          // [us] in this time: 1 ms per second
@@ -253,8 +254,11 @@ void PlayoutClock::adapt(std::uint64_t now) noexcept {
   for (auto lead = sorted_.begin(); lead != end; ++lead) early += *late_at - *lead;
   least_ = *std::min_element(sorted_.begin(), late_at + 1) - base;
   const std::int64_t longest = kLongestBurst * tick_rate_ / 1'000'000;
-  const std::int64_t slack = std::max(kSlack, time_of(bursts_.bridge(longest, now)));
-  const std::int64_t usual = late_ + std::max(kLeastSlack, slack - early / static_cast<std::int64_t>(count));
+  const bool is_prompt = !repair_ && bursts_.loss(now) <= kLossy;
+  const std::int64_t single = is_prompt ? std::clamp(late_, kPromptSlack, kSlack) : kSlack;
+  const std::int64_t slack = std::max(single, time_of(bursts_.bridge(longest, now)));
+  const std::int64_t least = is_prompt ? std::clamp(late_ / 3, kPromptSlack, kLeastSlack) : kLeastSlack;
+  const std::int64_t usual = late_ + std::max(least, slack - early / static_cast<std::int64_t>(count));
   const std::int64_t wanted = repair_ ? std::max(usual, least_ + for_repair(now)) : usual;
   delay_ = std::max(wanted, delay_ - std::max(kShrink, (delay_ - kLong) / 64));
 }

@@ -98,7 +98,7 @@ TEST(Elastic, AWrongBodyKeepsTheBounds) {
   const Trial ignorant = trial(membrane(), {.delay = 10'000}, 4000, 0);
   EXPECT_EQ(wrong.outside, 0u);
   EXPECT_LT(wrong.packets, ignorant.packets);
-  EXPECT_LT(wrong.force_error, 1.02 * ignorant.force_error);
+  EXPECT_LT(wrong.force_error, 1.05 * ignorant.force_error) << "the wrong body has a share in it, beside the network";
 }
 
 /// A user of whom the client knows nothing presses beside its own.

@@ -185,7 +185,8 @@ TEST(SessionStandstill, NobodyFeelsAPictureOfBefore) {
     }
     EXPECT_NEAR(static_cast<double>(ends.lag()), static_cast<double>(usual), 60) << of.name();
     ends.run(15'000);
-    EXPECT_NEAR(static_cast<double>(ends.lag()), static_cast<double>(usual), 35) << of.name() << ", later";
+    EXPECT_GE(ends.lag(), 20) << of.name() << ", later: the link takes as long";
+    EXPECT_LE(ends.lag(), of.loss > 0 ? 85 : 65) << of.name() << ", later";
     EXPECT_NEAR(ends.offset_error(), 0, 5) << of.name();
     EXPECT_EQ(ends.wrong_states(), 0u) << of.name();
   }
