@@ -55,7 +55,10 @@ Value join_value(const JoinOptions& options, SessionClient& session, const Visit
   if (status.clock_offset) out["clock_offset_us"] = *status.clock_offset;
   if (seal) out["key"] = seal->user;
   if (seal) out["seal"] = seal_value(seal->counters);
-  if (options.participates()) out["largest_force_N"] = visit.largest_force;
+  if (options.participates()) {
+    out["plays"] = visit.played.empty() ? Json() : Json(visit.played);
+    out["largest_force_N"] = visit.largest_force;
+  }
   if (const auto guard = visit.guard()) out["guard"] = value_of(*guard);
   return out;
 }

@@ -217,7 +217,10 @@ void Visit::look_at_seat(std::uint64_t now) {
   if (seat == kOnlyLooksOn)
     return print(fmt::format("looks on: the key \"{}\" may not touch. Whoever runs the server can change its role",
                              wire_.seal() ? wire_.seal()->user : ""));
-  if (seat > 0) return print("plays " + user);
+  if (seat > 0) {
+    played = user;
+    return print("plays " + user);
+  }
   print(fmt::format("{} is played by another: this end looks on until the seat is free. --user NAME plays another one", user));
 }
 

@@ -77,6 +77,7 @@ class Visit {
   std::optional<LeaveReason> closed;
   bool was_live = false, at_end = false;
   std::uint64_t refused = 0;
+  std::string played;        // the user of the scene whose hand this was; empty: it only looked on
   std::string beyond;        // names of the limits that the scene is beyond
   double largest_force = 0;  // [N]
   std::uint64_t lost = 0;    // ticks that are not in the trace
