@@ -215,25 +215,33 @@ class Epoch:
         return have["decoded"]
 
     def decode(self, now: int, number: int, packet: bytes) -> bool:
-        before = self.packets
-        taken = self.decode_one(now, number, packet)
-        if self.packets > before:                           # each may be the baseline of the next
-            for name, (_, waiting) in sorted(self.held.items()):
-                if name in self.held:
-                    self.decode_one(now, name[0], waiting)
-        return taken
-
-    def decode_one(self, now: int, number: int, packet: bytes) -> bool:
         if number < 1 or not self.decoders:
             return False
         try:
-            substream, payload = self.decoders.split(packet)
-            decoder = self.decoders.substreams[substream]
-            if number in decoder.receiver.kept:
+            if not self.push(number, packet):
                 return True                                 # it came before
-            decoded = decoder.decode(number, payload)
         except StreamError as error:
             return self.hold(now, number, packet, error)
+        for name, (_, waiting) in sorted(self.held.items()):  # each may be the baseline of the next
+            if name in self.held:
+                self.retry(name, waiting)
+        return True
+
+    def retry(self, name: tuple[int, int], packet: bytes) -> None:
+        """One that is held stays while its baseline is missing; a broken one goes."""
+        try:
+            self.push(name[0], packet)
+        except StreamError as error:
+            if error.errc != "state":
+                del self.held[name]
+
+    def push(self, number: int, packet: bytes) -> bool:
+        """False: it was decoded before."""
+        substream, payload = self.decoders.split(packet)
+        decoder = self.decoders.substreams[substream]
+        if number in decoder.receiver.kept:
+            return False
+        decoder.decode(number, payload)
         self.packets += 1
         self.shapes += isinstance(decoder, DeformableDecoder)
         layered = isinstance(decoder, DeformableDecoder) and self.scene.deformables[substream - 1].layered
