@@ -131,7 +131,7 @@ std::optional<Link::Arrival> Link::poll(Microseconds now) noexcept {
   heap_.pop_back();
   free_slots_.push_back(first.slot);
   if (first.number > 0) ++counters_.arrived;
-  if (first.number < newest_arrived_) ++counters_.reordered;
+  if (first.number > 0 && first.number < newest_arrived_) ++counters_.reordered;
   newest_arrived_ = std::max(newest_arrived_, first.number);
   return Arrival{first.due, slots_[first.slot]};
 }
