@@ -72,6 +72,7 @@ namespace {
 
 constexpr std::int64_t kSlack = 30'000, kLeastSlack = 10'000;  // [us]
 constexpr std::int64_t kPromptSlack = 2'000;                   // [us] both where nothing is late and hardly anything lost
+constexpr std::uint32_t kFewLost = 65536 / 100;                // fraction x 2^-16
 constexpr std::int64_t kLongestBurst = 150'000;                // [us]
 constexpr std::uint64_t kAdaptEvery = 100'000;                 // [us]
 constexpr std::int64_t kShrink = 100;                          // [us] in this time: 1 ms per second
@@ -218,9 +219,14 @@ bool PlayoutClock::is_settled(std::uint64_t now) noexcept {
   const bool changed = period_.leads > 0 && (change > kClockStep - spread_.value().value_or(0) || change < -kClockStep);
   const bool known = period_.leads >= 2 && period_.trip && now >= period_.since + kAdaptEvery;
   if (changed && period_.trip_before && !known && now < period_.since + kUndecided) return false;
-  if (changed && known && period_.trip_before && 2 * std::abs(*period_.trip - *period_.trip_before) < std::abs(change))
-    begin_anew(now);
-  if (period_.leads > 0) spread_.add(period_.least - period_.most, now);
+  const bool anew =
+      changed && known && period_.trip_before && 2 * std::abs(*period_.trip - *period_.trip_before) < std::abs(change);
+  if (anew) begin_anew(now);
+  if (period_.leads > 0) {
+    const bool had_both = anew && change + last_spread_ <= kClockStep;
+    if (!had_both) spread_.add(last_spread_, now);
+    last_spread_ = period_.least - period_.most;
+  }
   period_ = {};
   return true;
 }
@@ -254,7 +260,7 @@ void PlayoutClock::adapt(std::uint64_t now) noexcept {
   for (auto lead = sorted_.begin(); lead != end; ++lead) early += *late_at - *lead;
   least_ = *std::min_element(sorted_.begin(), late_at + 1) - base;
   const std::int64_t longest = kLongestBurst * tick_rate_ / 1'000'000;
-  const bool is_prompt = !repair_ && bursts_.loss(now) <= kLossy;
+  const bool is_prompt = !repair_ && bursts_.loss(now) <= kFewLost;
   const std::int64_t single = is_prompt ? std::clamp(late_, kPromptSlack, kSlack) : kSlack;
   const std::int64_t slack = std::max(single, time_of(bursts_.bridge(longest, now)));
   const std::int64_t least = is_prompt ? std::clamp(late_ / 3, kPromptSlack, kLeastSlack) : kLeastSlack;

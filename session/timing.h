@@ -84,7 +84,7 @@ class PlayoutClock {
   void heard(std::uint64_t number, std::optional<std::int64_t> tick, std::uint64_t now) noexcept;
   /// With the datagram that was heard the other end signalled the time of its ticks [us].   time as heard()
   void clock_signalled(std::int64_t time, std::uint64_t now) noexcept;
-  /// A copy of what was lost came, and up to this tick nothing is missing: that says nothing about the delay.   time O(1)
+  /// A copy of what was lost came: its tick is news, and says nothing about the delay.   time O(1)
   void repaired(std::int64_t tick) noexcept;
   /// A packet of this tick came at `at` [us] and could not be decoded until now.   time as heard()
   void held(std::int64_t tick, std::uint64_t at, std::uint64_t now) noexcept;
@@ -134,6 +134,7 @@ class PlayoutClock {
   std::int64_t reach_;                                        // [us]
   WindowedMinimum base_{kDelayWindow}, trips_{kDelayWindow};  // of the leads, of the round trips
   WindowedMinimum spread_{kDelayWindow};                      // of the periods: least less largest lead
+  std::int64_t last_spread_ = 0;                              // of the last one, which may have leads from before a step
   Period period_;
   std::optional<std::int64_t> base_then_, trip_then_;  // at the begin of the last period
   LossBursts bursts_;

@@ -192,6 +192,21 @@ TEST(SessionStandstill, NobodyFeelsAPictureOfBefore) {
   }
 }
 
+/// Whenever it falls asleep: leads of before and after may come to be looked at together.
+TEST(SessionStandstill, EveryMomentIsAsGood) {
+  for (int phase = 0; phase < 100; phase += 10) {
+    for (const int asleep : {200, 1000, 5000}) {
+      Standstill ends({.who = Who::server, .clock = Clock::stops, .milliseconds = asleep});
+      ends.run(12'000 + phase);
+      const std::int64_t usual = ends.lag();
+      ends.stand();
+      ends.run(1'500);
+      EXPECT_LE(ends.lag(), usual + 60) << phase << ", " << asleep;
+      EXPECT_EQ(ends.fraction(), 1) << phase << ", " << asleep;
+    }
+  }
+}
+
 /// A world that cannot keep up gives its ticks numbers one after the other, though each stands for a millisecond: what is shown stays near it.
 TEST(SessionStandstill, AWorldThatIsSlowIsShownAsItGoesOn) {
   for (const double rate : {0.99, 0.9, 0.5}) {
