@@ -44,6 +44,7 @@ struct Sender::Impl {
       deformables.push_back(DeformableEncoder::create(*scene, i, options.deformable, policy_of(i + 1, options.policy),
                                                       device.shape_of(*scene, scene->deformables[i])));
     if (scene->loads) add_loads(options);
+    frames.assign(deformables.size(), -1);
     packets.reserve(2 + 2 * deformables.size());
   }
 
@@ -62,6 +63,7 @@ struct Sender::Impl {
   }
   Result<void> read(std::int64_t tick, const Truth& truth) noexcept;
   Result<std::span<const Packet>> encode(std::int64_t tick, const Truth& truth, std::optional<std::uint64_t> number) noexcept;
+  bool has_shape(std::int64_t tick, std::size_t i) noexcept;
   void add(const Packet& packet) noexcept {
     if (packet.bytes.empty()) return;
     packets.push_back(packet);
@@ -75,7 +77,8 @@ struct Sender::Impl {
   SubstreamEncoder<RigidEncoder> rigid;
   std::vector<std::unique_ptr<DeformableEncoder>> deformables;
   std::optional<SubstreamEncoder<LoadEncoder>> loads;
-  std::vector<Packet> packets;  // of this tick
+  std::vector<std::int64_t> frames;  // by deformable object: tick of its newest shape, -1: none yet
+  std::vector<Packet> packets;       // of this tick
   std::int64_t last_tick = -1;
   std::uint64_t last_number = 0;
 };
@@ -113,6 +116,20 @@ Result<void> Sender::Impl::read(std::int64_t tick, const Truth& truth) noexcept 
   return {};
 }
 
+/// A shape that is new, or whose object rests while its receiver needs it once more.
+bool Sender::Impl::has_shape(std::int64_t tick, std::size_t i) noexcept {
+  const ShapeTruth& shape = truth().shapes[i];
+  if (shape.is_new()) {
+    frames[i] = tick;
+    return true;
+  }
+  const DeformableObject& object = scene->deformables[i];
+  const bool rests = frames[i] >= 0 && tick > frames[i] + (std::int64_t{object.frame_period} >> 7);  // two frames
+  if (!rests || (object.body && device.path) || !deformables[i]->is_owed(tick)) return false;
+  deformables[i]->read(shape);
+  return true;
+}
+
 Result<std::span<const Packet>> Sender::Impl::encode(std::int64_t tick, const Truth& truth,
                                                      std::optional<std::uint64_t> number) noexcept {
   if (number && (*number <= last_number || !is_number(*number + 1))) return fail(Errc::invalid_argument, "R-API-5");
@@ -123,7 +140,7 @@ Result<std::span<const Packet>> Sender::Impl::encode(std::int64_t tick, const Tr
     add(packet);
   }
   for (std::size_t i = 0; i < deformables.size(); ++i) {
-    if (!this->truth().shapes[i].is_new()) continue;
+    if (!has_shape(tick, i)) continue;
     DeformableEncoder& object = *deformables[i];
     const Packet first = object.encode(tick, object.is_layered() ? Layer::haptic : Layer::all, number);
     add(first);

@@ -20,7 +20,7 @@ MOST_HELD, BYTES_HELD, LONGEST_HELD = 1024, 1 << 16, 2_000_000
 ACK_RIDES_ON = {UP: (BUTTONS, STATE), DOWN: (PIECE, TICK_MAPPING, SEAT)}   # an acknowledgement rides on these, due or not
 MOST_UNREPORTED = 32                                        # numbers that are accepted until an acknowledgement is due at once
 PIECE_SIZE, WINDOW, WINDOW_PER_PIECE, LARGEST_WINDOW = 1024, 64, 16, 1024
-FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 4
+FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 32
 REMEMBERED = 1024                                           # own numbers
 MS = 1000                                                   # us
 MOST_SILENCE, MOST_JOINING, FIRST_ANSWER = 120_000 * MS, 10_000 * MS, 250 * MS
@@ -210,8 +210,10 @@ class Epoch:
         have["data"].setdefault(index, data)
         if len(have["data"]) < count:
             return True
-        if have["decoded"] is None:
+        if not have["decoded"]:
             have["decoded"] = self.decode(now, number - back, b"".join(have["data"][i] for i in range(count)))
+            if not have["decoded"]:
+                del have["data"][index]                     # as if it had never come
         return have["decoded"]
 
     def decode(self, now: int, number: int, packet: bytes) -> bool:
@@ -270,7 +272,7 @@ class Epoch:
 
     def report(self, now: int) -> bytes:
         """The playout delay, 0 as nothing is shown here, and whether a key packet is needed."""
-        is_stuck = any(now > at + max(500 * MS, 4 * self.ack_timeout()) for at, _ in self.held.values())
+        is_stuck = any(at + max(500 * MS, 4 * self.ack_timeout()) < now <= at + LONGEST_HELD for at, _ in self.held.values())
         return part(REPORT, varint(0) + bytes([is_stuck]))
 
     def accept(self, now: int, number: int, parts: list[tuple], urgent: bool) -> None:

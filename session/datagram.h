@@ -105,14 +105,14 @@ struct HashPart {
 /// What a live client shows and lacks.
 struct ReportPart {
   std::uint64_t delay = 0;  ///< [ms] of its playout
-  /// kKey: packets of rigid objects wait for one that does not come; kView: there is a view.
+  /// kKey: packets wait for one that does not come; kView: there is a view.
   std::uint8_t flags = 0;
   std::array<std::int32_t, 3> view{};  ///< where the client looks from, world frame, x 2^-kViewExponent m
   static constexpr std::uint8_t kKey = 1, kView = 2;
   static constexpr int kViewExponent = 8;
 };
 
-/// On what packets of rigid objects build from this datagram on.
+/// On what packets down build from this datagram on.
 struct BaselinesPart {
   std::uint8_t policy = 0;  ///< 0: the packet before; 1: one that was acknowledged
 };

@@ -182,11 +182,14 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
   }
   const std::size_t substream = decoded->substream;
   if (is_of_deformable(*receiver->scene(), substream)) reading.ack_timing = AckTiming::now;
-  if ((substream == 0 || waits_for(substream)) && number < std::min(heard_[substream], reading.heard.number))
-    reading.heard.is_copy = true;
-  if (!reading.heard.is_copy) reading.heard.oldest = std::min(reading.heard.oldest.value_or(decoded->tick), decoded->tick);
+  if ((substream == 0 || waits_for(substream)) && number < std::min(heard_[substream], reading.heard.number)) {
+    reading.heard.has_copy = true;
+  } else {
+    reading.heard.newest = std::max(reading.heard.newest.value_or(decoded->tick), decoded->tick);
+    reading.heard.oldest = std::min(reading.heard.oldest.value_or(decoded->tick), decoded->tick);
+  }
   took(*decoded, packet.size(), reading);
-  if (held_ && !held_->empty()) take_held(reading);
+  if (held_ && !held_->empty()) take_held(substream, reading);
   return true;
 }
 
@@ -225,9 +228,10 @@ bool Exchange::hold(std::uint64_t number, std::span<const std::uint8_t> packet, 
   return true;
 }
 
-/// Those whose baseline has come, in the order of their numbers: each may be the baseline of the next.
-void Exchange::take_held(Reading& reading) noexcept {
+/// Those of a substream whose baseline has come, in the order of their numbers: each may be the baseline of the next.
+void Exchange::take_held(std::size_t substream, Reading& reading) noexcept {
   held_->remove_if([&](const HeldPackets::Held& held) {
+    if (held.substream != substream) return false;
     if (held.number <= newest_[held.substream]) return true;  // older than a key packet
     const auto decoded = receiver->push(held.number, held_->bytes(held));
     if (!decoded) {
@@ -252,9 +256,10 @@ void Exchange::take_held(Reading& reading) noexcept {
 Result<void> Exchange::take(const FragmentPart& fragment, Reading& reading) noexcept {
   TACTUS_TRY(const auto taken, fragments_.take(reading.heard.number, fragment));
   reading.complete = taken.kept;
-  if (!taken.complete || !decode(taken.complete->number, taken.complete->packet, reading)) return {};
-  fragments_.decoded(*taken.complete);
-  reading.complete = true;
+  if (!taken.complete) return {};
+  reading.complete = decode(taken.complete->number, taken.complete->packet, reading);
+  if (reading.complete) fragments_.decoded(*taken.complete);
+  else fragments_.refused(*taken.complete, static_cast<std::size_t>(fragment.index));
   return {};
 }
 
@@ -433,7 +438,11 @@ unsigned Exchange::copies_of(std::uint64_t substream) const noexcept {
 void Exchange::lose(std::uint64_t number, std::uint64_t now) noexcept {
   const Slot& slot = slots_[number % slots_.size()];
   if (!resends_ || slot.number != number) return;
-  for (std::size_t i = 0; i < slot.count; ++i) resends_->lost(slot.kept[i], number, now, copies_of(slot.packets[i].substream));
+  for (std::size_t i = 0; i < slot.count; ++i) {
+    const PacketName& name = slot.packets[i];
+    resends_->lost(slot.kept[i], number, now, copies_of(name.substream));
+    if (chains(name.substream) && !resends_->keeps(slot.kept[i], number)) resends_->miss(name.substream, number - name.back);
+  }
 }
 
 const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
@@ -455,15 +464,18 @@ void Exchange::watch_tail(std::uint64_t now) noexcept {
 }
 
 void Exchange::want_key(std::uint64_t now) noexcept {
-  if (now >= chain_at_ + ack_timeout()) wants_chains_ = true;
+  if (now >= chains_at_ + ack_timeout()) wants_chains_ = true;
 }
 
 void Exchange::begin_chains(std::uint64_t now) noexcept {
-  const bool all = std::exchange(wants_chains_, false) || is_cut_off(now);  // then the first that gets through is enough
   if (!repairs_) return;
-  for (std::size_t i = 0; all && i <= sender->scene()->deformables.size(); ++i)
-    if (chains(i)) sender->request_key(i), chain_at_ = now;
-  while (const auto broken = resends_->poll_broken()) sender->request_key(*broken), chain_at_ = now;
+  if (std::exchange(wants_chains_, false)) {
+    for (std::size_t i = 0; i <= sender->scene()->deformables.size(); ++i)
+      if (chains(i)) resends_->break_chain(i);
+    chains_at_ = now;
+  }
+  if (is_cut_off(now)) return sender->request_key(0);  // the first that gets through is then enough; shapes wait until one does
+  while (const auto broken = resends_->poll_broken()) sender->request_key(*broken);
 }
 
 /// As many as fit of the packets that are lost and not too old, or one fragment.
@@ -500,6 +512,7 @@ bool Exchange::add_packets(std::uint64_t number, std::uint64_t now) noexcept {
   while (has_packets() && !cut && packets_[next_packet_].number <= number && slot.count < slot.packets.size()) {
     const Packet& packet = packets_[next_packet_];
     if (packet.bytes.size() > kFragmentSize * kMostFragments) {
+      if (chains(packet.substream)) resends_->break_chain(packet.substream);
       ++traffic_.packets_held;
       ++next_packet_;
       continue;

@@ -48,10 +48,11 @@ class Exchange {
 
   /// What the packets of a datagram brought.
   struct Heard {
-    std::uint64_t number = 0;            ///< of the datagram
-    std::optional<std::int64_t> tick;    ///< newest of the packets that were decoded
-    std::optional<std::int64_t> oldest;  ///< oldest of them
-    bool is_copy = false;                ///< one that others wait for was a copy: its tick says nothing about the delay
+    std::uint64_t number = 0;          ///< of the datagram
+    std::optional<std::int64_t> tick;  ///< newest of the packets that were decoded
+    /// Newest and oldest of those that were no copies; the tick of a copy of rigid objects or in a chain says nothing about the delay.
+    std::optional<std::int64_t> newest, oldest;
+    bool has_copy = false;  ///< one was a copy
     /// Of the packets that were held until now, those with the shortest and the longest delay.
     struct Arrival {
       std::int64_t tick = 0;
@@ -67,8 +68,9 @@ class Exchange {
   template <class Take>
   Result<Heard> handle(std::uint64_t now, const Numbered& datagram, Take&& take) noexcept {
     TACTUS_TRY(const std::uint64_t number, receive(now, datagram));
-    Reading reading{{.number = number, .tick = {}, .oldest = {}, .is_copy = false, .held = {}, .hash = {}, .round_trip = {}},
-                    now};
+    Reading reading{
+        {.number = number, .tick = {}, .newest = {}, .oldest = {}, .has_copy = false, .held = {}, .hash = {}, .round_trip = {}},
+        now};
     PartReader parts = datagram.parts(direction_ == Direction::up ? Direction::down : Direction::up);
     for (;;) {
       TACTUS_TRY(const std::optional<Part> part, parts.next());
@@ -123,8 +125,10 @@ class Exchange {
   bool add_piece(DatagramWriter& writer, std::uint64_t number, std::uint64_t now) noexcept;
   void expire_pieces(std::uint64_t now) noexcept;            ///< what should be acknowledged by now goes again
   std::optional<std::uint64_t> pieces_due() const noexcept;  ///< [us] when that is; nothing: none is in flight
-  /// [us] since when the first packet that is held waits; nothing: none is held.
-  std::optional<std::uint64_t> waits_since() const noexcept { return held_ ? held_->waits_since() : std::nullopt; }
+  /// [us] since when the first packet that is held waits; nothing: none is held, or for longer than it has a use.
+  std::optional<std::uint64_t> waits_since(std::uint64_t now) const noexcept {
+    return held_ ? held_->waits_since(now) : std::nullopt;
+  }
   /// The client has asked for key packets. It gets them, but not more often than one can be answered.
   void want_key(std::uint64_t now) noexcept;
   void set_playout(std::uint64_t delay) noexcept { playout_ = delay; }  ///< [us] of the client, as it has reported
@@ -166,7 +170,7 @@ class Exchange {
   Result<void> take(const FragmentPart& fragment, Reading& reading) noexcept;
   bool decode(std::uint64_t number, std::span<const std::uint8_t> packet, Reading& reading) noexcept;
   bool hold(std::uint64_t number, std::span<const std::uint8_t> packet, const Error& error, std::uint64_t now) noexcept;
-  void take_held(Reading& reading) noexcept;
+  void take_held(std::size_t substream, Reading& reading) noexcept;
   bool took(const DecodedPacket& decoded, std::size_t size, Reading& reading) noexcept;
   void accept(std::uint64_t number, const Reading& reading) noexcept;
   void finish(const Reading& reading) noexcept;
@@ -219,7 +223,7 @@ class Exchange {
   std::uint64_t playout_ = 0;        // [us] of the client
   std::uint64_t tail_at_ = 0;        // [us] when the newest ack-eliciting datagram was last taken for lost
   bool wants_chains_ = false;        // chains must begin anew
-  std::uint64_t chain_at_ = 0;       // [us] when one did
+  std::uint64_t chains_at_ = 0;      // [us] when they did, all of them
   std::span<const Packet> packets_;  // of the last submit()
   std::size_t next_packet_ = 0, next_fragment_ = 0;
   std::uint64_t heard_at_, sent_at_;

@@ -62,6 +62,12 @@ Result<Fragments::Taken> Fragments::take(std::uint64_t datagram, const FragmentP
 
 void Fragments::decoded(const Complete& packet) noexcept { find(packet.number, packet.substream)->is_decoded = true; }
 
+void Fragments::refused(const Complete& packet, std::size_t index) noexcept {
+  Packet& mine = *find(packet.number, packet.substream);
+  mine.has[index] = false;
+  --mine.have;
+}
+
 // ==== pieces ====
 
 std::optional<std::uint64_t> PieceSender::next() const noexcept {
@@ -135,7 +141,8 @@ constexpr std::uint64_t kApart = 10'000;  // [us]
 Resends::Resends(std::size_t largest, std::size_t substreams)
     : kept_(kKept + std::min((largest + kFragmentSize - 1) / kFragmentSize, kMostFragments)),
       bytes_(kBytes + std::min(largest, kFragmentSize * kMostFragments)),
-      broken_(substreams, 0) {
+      broken_(substreams, 0),
+      begun_(substreams, 0) {
   waiting_.reserve(kept_.size());
 }
 
@@ -152,7 +159,6 @@ void Resends::settle(Kept& kept) noexcept {
 /// The oldest is dropped.
 void Resends::pop() noexcept {
   Kept& oldest = kept_[first_];
-  if (!oldest.is_settled && oldest.is_chained) break_chain(oldest.substream);
   settle(oldest);
   oldest.datagrams = {};
   first_ = (first_ + 1) % kept_.size();
@@ -180,6 +186,10 @@ std::uint16_t Resends::keep(std::uint64_t datagram, const Packet& packet, const 
   std::ranges::copy(portion.bytes, bytes_.begin() + static_cast<std::ptrdiff_t>(end_ % capacity));
   end_ += size;
   return static_cast<std::uint16_t>(slot);
+}
+
+bool Resends::keeps(std::uint16_t slot, std::uint64_t datagram) const noexcept {
+  return slot != kNone && std::ranges::find(kept_[slot].datagrams, datagram) != kept_[slot].datagrams.end();
 }
 
 void Resends::arrived(std::uint16_t slot, std::uint64_t datagram) noexcept {
@@ -247,6 +257,7 @@ void Resends::settle_chain(std::size_t substream, std::uint64_t number) noexcept
     Kept& kept = kept_[(first_ + i) % kept_.size()];
     if (kept.substream == substream && kept.number < number) settle(kept);
   }
+  begun_[substream] = number;
   if (std::exchange(broken_[substream], std::uint8_t{0}) == 1) --count_broken_;
 }
 
@@ -281,9 +292,11 @@ bool HeldPackets::hold(std::uint64_t number, std::size_t substream, std::span<co
   return true;
 }
 
-std::optional<std::uint64_t> HeldPackets::waits_since() const noexcept {
-  if (held_.empty()) return std::nullopt;
-  return std::ranges::min_element(held_, {}, &Held::at)->at;
+std::optional<std::uint64_t> HeldPackets::waits_since(std::uint64_t now) const noexcept {
+  std::optional<std::uint64_t> out;
+  for (const Held& held : held_)
+    if (now <= held.at + kLongest) out = std::min(out.value_or(held.at), held.at);
+  return out;
 }
 
 }  // namespace tactus

@@ -30,7 +30,7 @@ inline constexpr std::size_t kMostFragments = 1024;
 
 class Fragments {
  public:
-  static constexpr std::size_t kMost = 4;  ///< packets at a time; a newer one takes the place of the oldest
+  static constexpr std::size_t kMost = 32;  ///< packets at a time; a newer one takes the place of the oldest
 
   /// Nothing is allocated if no packet is larger than a fragment.   in  largest  packet [bytes]
   explicit Fragments(std::size_t largest);
@@ -48,6 +48,8 @@ class Fragments {
   /// err  invalid R-SES-7: index, count or length; the packet's number is below 1, or it is larger than any of the scene
   Result<Taken> take(std::uint64_t datagram, const FragmentPart& fragment) noexcept;
   void decoded(const Complete& packet) noexcept;  ///< pre  take() has just returned it
+  /// There was no room for it: the fragment that completed it is as if it had never come.   pre  take() has just returned it for this fragment
+  void refused(const Complete& packet, std::size_t index) noexcept;
 
  private:
   struct Packet {
@@ -203,6 +205,8 @@ class Resends {
   /// out  its slot, for arrived() and lost() of the datagram
   std::uint16_t keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now,
                      bool is_chained) noexcept;
+  /// It is held yet, or has arrived: the datagram that brought what had this slot need not have.
+  bool keeps(std::uint16_t slot, std::uint64_t datagram) const noexcept;
   /// The datagram that brought what has this slot.
   void arrived(std::uint16_t slot, std::uint64_t datagram) noexcept;
   /// in   copies  that should go, 10 ms apart; none while a newer datagram with it is in flight
@@ -219,6 +223,10 @@ class Resends {
   /// A chained packet of this substream will not arrive, or so late that it is no use: all after it wait. Each once.
   std::optional<std::size_t> poll_broken() noexcept;
   void break_chain(std::size_t substream) noexcept;
+  /// This packet is lost, and held no more. Before the key packet that the chain began with it does not matter.
+  void miss(std::size_t substream, std::uint64_t number) noexcept {
+    if (number >= begun_[substream]) break_chain(substream);
+  }
   /// The chain begins anew: packets of this substream below this number need not arrive any more.   time O(kept)
   void settle_chain(std::size_t substream, std::uint64_t number) noexcept;
 
@@ -234,6 +242,7 @@ class Resends {
   std::size_t first_ = 0, count_ = 0;
   std::uint64_t end_ = 0;             // of the bytes
   std::vector<std::uint8_t> broken_;  // by substream
+  std::vector<std::uint64_t> begun_;  // the same: number of the newest key packet
   std::size_t count_broken_ = 0;
 };
 
@@ -266,8 +275,8 @@ class HeldPackets {
   std::span<const std::uint8_t> bytes(const Held& held) const noexcept {
     return std::span(bytes_).subspan(held.begin, held.size);
   }
-  /// [us] when the first of them came; nothing: none is held.   time O(held)
-  std::optional<std::uint64_t> waits_since() const noexcept;
+  /// [us] when the first of them came, of those that came not longer than kLongest ago; nothing: none is held.   time O(held)
+  std::optional<std::uint64_t> waits_since(std::uint64_t now) const noexcept;
   /// Forget those for which `done(held)` is true.
   template <class Done>
   void remove_if(Done&& done) noexcept {

@@ -239,20 +239,20 @@ void SessionClient::Impl::play(const Exchange::Heard& heard, std::uint64_t now) 
   PlayoutClock& playout = *current->playout;
   const Exchange& exchange = current->exchange;
   playout.set_repair(exchange.is_repaired() ? exchange.sent().round_trip() : std::nullopt);
-  playout.waits(exchange.waits_since(), now);
-  playout.heard(heard.number, heard.is_copy ? std::nullopt : heard.tick, now);
-  if (heard.is_copy) playout.repaired(*heard.tick);
+  playout.waits(exchange.waits_since(now), now);
+  playout.heard(heard.number, heard.newest, now);
+  if (heard.has_copy) playout.repaired(*heard.tick);
   if (heard.held)
     for (const auto& arrival : *heard.held) playout.held(arrival.tick, arrival.at, now);
   Receiver& receiver = *current->exchange.receiver;
   receiver.replica().keep(playout.delay() * receiver.scene()->tick_rate / 1'000'000 + 1);
   if (heard.round_trip) playout.measured(*heard.round_trip, now);
-  if (heard.oldest && *heard.oldest < *heard.tick && !heard.is_copy) playout.late(*heard.oldest, now);
+  if (heard.oldest && *heard.oldest < *heard.newest) playout.late(*heard.oldest, now);
 }
 
 /// Packets wait longer than any copy can need.
 bool SessionClient::Impl::is_stuck(std::uint64_t now) const noexcept {
-  const auto since = current->exchange.waits_since();
+  const auto since = current->exchange.waits_since(now);
   return since && now > *since + std::max(kStuck, 4 * current->exchange.ack_timeout());
 }
 
@@ -460,7 +460,7 @@ std::int64_t SessionClient::shown_tick(std::uint64_t now) noexcept {
   impl_->look(now);
   Epoch* const epoch = impl_->shown_epoch();
   if (epoch == nullptr || !epoch->playout) return -1;
-  epoch->playout->waits(epoch->exchange.waits_since(), now);
+  epoch->playout->waits(epoch->exchange.waits_since(now), now);
   return epoch->playout->shown(now);
 }
 

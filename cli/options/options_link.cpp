@@ -233,10 +233,10 @@ Option* add_playout(Command& app, std::string& value) {
     value = text;
   };
   return app
-      .add_option("--playout", read,
-                  "How long after the fastest packet a client shows a tick: a time, or adaptive, which waits for nearly all, and "
-                  "30 ms while "
-                  "none was late, as the first that is would break the bounds [adaptive]")
+      .add_option(
+          "--playout", read,
+          "How long after the fastest packet a client shows a tick: a time, or adaptive, which waits for nearly all: 2 ms "
+          "while hardly one was late or lost, for who only looks on 30 ms [adaptive]")
       ->type_name("TIME");
 }
 

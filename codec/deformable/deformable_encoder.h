@@ -147,8 +147,9 @@ class DeformableEncoder {
   /// in   number  as in SubstreamEncoder::encode
   virtual Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept = 0;
   virtual bool is_layered() const noexcept = 0;
-  virtual void set_link(const LinkState& link) noexcept = 0;  ///< nothing without Baseline::acknowledged, or with layers
-  virtual void set_bound_scale(double factor) noexcept = 0;   ///< of all thresholds.   pre  factor >= 1
+  virtual bool is_owed(std::int64_t tick) const noexcept = 0;  ///< as SubstreamEncoder::is_owed
+  virtual void set_link(const LinkState& link) noexcept = 0;   ///< nothing without Baseline::acknowledged, or with layers
+  virtual void set_bound_scale(double factor) noexcept = 0;    ///< of all thresholds.   pre  factor >= 1
   virtual void request_key() noexcept = 0;
   virtual void forget_last() noexcept = 0;
   virtual void acknowledge(std::uint64_t number) noexcept = 0;
@@ -172,6 +173,7 @@ class DeformableEncoderOf final : public DeformableEncoder {
     return stream_.encode(tick, layer, number).value_or(Packet{});
   }
   bool is_layered() const noexcept override { return layered_; }
+  bool is_owed(std::int64_t tick) const noexcept override { return stream_.is_owed(tick); }
   /// Where nothing is lost an acknowledgement is late at most.
   void set_link(const LinkState& link) noexcept override {
     stream_.set_ack_timeout(link.loss >= kSomeLoss ? link.ack_timeout : 0);

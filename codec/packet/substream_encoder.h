@@ -165,6 +165,9 @@ class SubstreamEncoder {
     ack_timeout_ = baseline_ == Baseline::acknowledged ? std::clamp<std::int64_t>(ticks, 0, kMost) : 0;
   }
 
+  /// A packet is required even if there is nothing new: a key packet is requested, or the newest state is to be sent again.
+  bool is_owed(std::int64_t tick) const noexcept { return key_.is_requested() || is_overdue(tick); }
+
   const State& newest() const noexcept { return states_.newest(); }
   Codec& codec() noexcept { return codec_; }
 

@@ -323,10 +323,22 @@ TEST(Resends, KnowWhenAChainMustBeginAnew) {
   renewed.settle_chain(0, 2);
   EXPECT_EQ(renewed.next(390 * kMillisecond, kShapes), nullptr);
   EXPECT_FALSE(renewed.poll_broken());
-  Resends full(0);  // 64 KiB: what is dropped has not arrived
-  for (std::uint64_t n = 1; n <= 65; ++n) Sent(1000, 0).keep(full, n, n, 0);
+}
+
+/// What finds no room may still arrive: the chain breaks when it is known to be lost, unless it has begun anew since.
+TEST(Resends, ForgetWhatIsInFlightWithoutBreakingItsChain) {
+  Resends full(0);  // 64 KiB
+  std::vector<std::uint16_t> slots{Resends::kNone};
+  for (std::uint64_t n = 1; n <= 66; ++n) slots.push_back(Sent(1000, 0).keep(full, n, n, 0));
   EXPECT_FALSE(full.poll_broken());
-  Sent(1000, 0).keep(full, 66, 66, 0);
+  EXPECT_FALSE(full.keeps(slots[1], 1));
+  EXPECT_TRUE(full.keeps(slots[2], 2));
+  full.miss(0, 1);
+  EXPECT_EQ(full.poll_broken(), 0u);
+  full.settle_chain(0, 60);  // a key packet
+  full.miss(0, 59);
+  EXPECT_FALSE(full.poll_broken());
+  full.miss(0, 60);
   EXPECT_EQ(full.poll_broken(), 0u);
 }
 
@@ -398,7 +410,7 @@ TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
 
 TEST(HeldPackets, AreInOrderOfTheirNumbers) {
   HeldPackets held(100);
-  EXPECT_FALSE(held.waits_since());
+  EXPECT_FALSE(held.waits_since(100));
   for (const std::uint64_t number : {7u, 3u, 9u, 3u}) {
     const std::vector<std::uint8_t> bytes(static_cast<std::size_t>(number), static_cast<std::uint8_t>(number));
     EXPECT_TRUE(held.hold(number, 0, bytes, 100 - number));
@@ -409,9 +421,9 @@ TEST(HeldPackets, AreInOrderOfTheirNumbers) {
     EXPECT_EQ(held.bytes(held[i]).size(), number);
     EXPECT_EQ(held.bytes(held[i++]).front(), number);
   }
-  EXPECT_EQ(held.waits_since(), 91u);
+  EXPECT_EQ(held.waits_since(100), 91u);
   held.remove_if([](const HeldPackets::Held& one) { return one.number == 9; });
-  EXPECT_EQ(held.waits_since(), 93u);
+  EXPECT_EQ(held.waits_since(100), 93u);
   held.remove_if([](const HeldPackets::Held&) { return true; });
   EXPECT_TRUE(held.empty());
 }
