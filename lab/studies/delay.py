@@ -236,7 +236,7 @@ def draw(rows):
         axes[0].set_title(scene, loc="left")
     for panel in grid[-1]:
         panel.set_xlabel("round trip [ms]")
-    fig.suptitle(" \n ")  # room for the legend
-    fig.legend(*grid[0][0].get_legend_handles_labels(), loc="upper center", ncol=4, title="what clients do; bars: least and "
+    fig.suptitle(" \n \n ")  # room for the legend
+    fig.legend(*grid[0][0].get_legend_handles_labels(), loc="upper center", ncol=3, title="what clients do; bars: least and "
                                                                                           "largest seed")
     return fig
