@@ -217,6 +217,7 @@ TEST(Link, ThatBeginsAnewLosesNothingThatIsOnItsWay) {
     for (Link* one : {&link, &fresh}) one->send(now, first);
   for (std::size_t before = 0; before < 2;) {
     const auto arrival = link.poll(2 * kSecond);
+    ASSERT_TRUE(arrival);
     const bool is_old =
         arrival->time == (before == 0 ? 18 : 28) * kMillisecond && link.counters().arrived == fresh.counters().arrived;
     if (is_old) ++before;
