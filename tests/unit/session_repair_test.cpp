@@ -137,6 +137,21 @@ TEST(RepairedExchange, AfterAnOutageAKeyPacketOfEachIsEnough) {
   }
 }
 
+/// Key packets of shapes are large: they wait until somebody answers.
+TEST(RepairedExchange, ToASilentClientOnlyTheBodiesBeginAnew) {
+  RepairedEnds ends({.baseline = Baseline::repaired, .count = 2});
+  for (int i = 0; i < 120; ++i) ends.lose();
+  std::size_t bodies = 0, shapes = 0;
+  for (int i = 0; i < 100; ++i, ends.now += 10 * kMillisecond) {
+    for (const Packet& packet : ends.submit()) (packet.substream == 0 ? bodies : shapes) += packet.key ? 1 : 0;
+    ends.drain(*ends.server);
+  }
+  EXPECT_GE(bodies, 5u);
+  EXPECT_EQ(shapes, 0u);
+  for (int i = 0; i < 30; ++i) ends.step();
+  ends.expect_same();
+}
+
 /// The last packet of a shape and its copies are lost with the link; then it rests, and no frame shows what is missing.
 TEST(RepairedExchange, AShapeThatRestsIsRepairedToo) {
   RepairedEnds ends({.baseline = Baseline::repaired, .count = 1}, 1);
