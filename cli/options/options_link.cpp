@@ -236,7 +236,7 @@ Option* add_playout(Command& app, std::string& value) {
       .add_option(
           "--playout", read,
           "How long after the fastest packet a client shows a tick: a time, or adaptive, which waits for nearly all: 2 ms "
-          "while hardly one was late or lost, for who only looks on 30 ms [adaptive]")
+          "while hardly any was late or lost, 30 ms for observers [adaptive]")
       ->type_name("TIME");
 }
 
